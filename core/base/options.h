@@ -1,0 +1,56 @@
+/* options.h: the one way in which awtd's programs take their command lines: --name VALUE or --name=VALUE from a
+ * table, checked, with a --help that is made from the same table. (getopt_long is not POSIX.) */
+#ifndef BASE_OPTIONS_H
+#define BASE_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+enum { OPTION_LIST_MAX = 64 };
+
+typedef enum option_kind {
+    OPTION_FLAG,          /* bool: given or not */
+    OPTION_TEXT,          /* const char *: the argument */
+    OPTION_OPTIONAL_TEXT, /* const char *: the argument, or "-" where none follows */
+    OPTION_INTEGER,       /* long long within [least, greatest] */
+    OPTION_REAL,          /* double within [least, greatest] */
+    OPTION_LIST           /* option_list: may be given again */
+} option_kind;
+
+typedef struct option_list {
+    const char *items[OPTION_LIST_MAX];
+    size_t count;
+} option_list;
+
+typedef struct option {
+    const char *name; /* without the dashes */
+    option_kind kind;
+    const char *argument; /* its name in the help; NULL for flags */
+    void *value;          /* of the kind's type; keeps its default where the option is not given */
+    double least, greatest;
+    const char *help;
+} option;
+
+typedef struct option_program {
+    const char *name;      /* "awtd", "awtctl play" */
+    const char *summary;   /* one line */
+    const char *operands;  /* shown in the usage line, e.g. "FILE.glb"; NULL: none are taken */
+    const option *options; /* --help and --version are understood without being listed */
+    size_t option_count;
+} option_program;
+
+typedef enum option_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_VERSION, OPTIONS_WRONG } option_result;
+
+/* Reads arguments[0 .. count-1] (without the program's name). Texts point into them. `operands` (room for
+ * `operand_max`) receives what is no option. OPTIONS_WRONG: `error` (of `error_size` bytes) says what and why. */
+option_result options_parse(const option_program *program, int count, char *const *arguments, const char **operands,
+                            size_t operand_max, size_t *operand_count, char *error, size_t error_size);
+
+/* The help text, with defaults as they stand in the values. */
+void options_help(const option_program *program, FILE *file);
+
+/* Splits "HOST:PORT", "[IPV6]:PORT" or ":PORT" (host empty then). False: not of that form, or too long. */
+bool options_split_address(const char *text, char *host, size_t host_size, char *port, size_t port_size);
+
+#endif
