@@ -1,0 +1,204 @@
+/* build.c: awt_groom_build, stage by stage. The sizes are planned first, so that all memory is taken before the work
+ * begins and no stage can fail: one arena for the groom, one for the scratch of the build. */
+#include "groom/build.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "base/error.h"
+#include "groom/plan.h"
+#include "sim/evaluate.h"
+
+#define COARSE_NODE_KG 0.001 /* AWT §5: about 1 g a coarse node, 0.5 to 2 kg a head */
+
+awt_groom_def awt_groom_def_default(void)
+{
+    return (awt_groom_def){.levels = 3, .head_radius_m = AWT_HEAD_RADIUS_M};
+}
+
+awt_groom_def awt_groom_def_of_style(const awt_style *style)
+{
+    return (awt_groom_def){.levels = style->levels,
+                           .sections = style->sections,
+                           .finest_wisps = style->finest_wisps,
+                           .top_wisps = style->top_wisps,
+                           .points_per_strand = style->points_per_strand,
+                           .head_radius_m = AWT_HEAD_RADIUS_M};
+}
+
+static void take_plan(awt_groom *groom, const groom_plan *plan)
+{
+    groom->info.strand_count = plan->strand_count;
+    groom->info.points_per_strand = plan->points_per_strand;
+    groom->info.levels = plan->levels;
+    groom->info.sections = plan->sections;
+    groom->info.head_radius_m = plan->head_radius_m;
+    for (uint32_t level = 0; level < plan->levels; level++) {
+        groom->info.wisp_count[level] = plan->wisp_count[level];
+        groom->level_first[level + 1] = groom->level_first[level] + plan->wisp_count[level];
+    }
+    groom->gc_count = groom->level_first[plan->levels];
+    groom->info.coarse_nodes = plan->wisp_count[0] * plan->sections;
+    groom->info.finest_nodes = plan->wisp_count[plan->levels - 1] * plan->sections;
+}
+
+static void lay_out_groom(awt_groom *groom, arena *memory)
+{
+    const size_t gcs = groom->gc_count, nodes = gcs * groom->info.sections;
+    const size_t points = (size_t)groom->info.strand_count * groom->info.points_per_strand;
+    groom->gc_super = ARENA_PUSH(memory, uint32_t, gcs);
+    groom->gc_sub_first = ARENA_PUSH(memory, uint32_t, gcs);
+    groom->gc_sub_count = ARENA_PUSH(memory, uint32_t, gcs);
+    groom->gc_tree = ARENA_PUSH(memory, uint32_t, gcs);
+    groom->gc_strand_count = ARENA_PUSH(memory, uint32_t, gcs);
+    groom->rest_position = ARENA_PUSH(memory, vec3, nodes);
+    groom->rest_radius = ARENA_PUSH(memory, float, nodes);
+    groom->rest_frame = ARENA_PUSH(memory, quat, groom->info.finest_nodes);
+    groom->gc_strand_first = ARENA_PUSH(memory, uint32_t, (size_t)groom->info.wisp_count[groom->info.levels - 1] + 1);
+    groom->strand_station = ARENA_PUSH(memory, uint16_t, points);
+    groom->strand_offset = ARENA_PUSH(memory, vec3, points);
+}
+
+static void lay_out_scratch(groom_build *build, arena *memory)
+{
+    const size_t strands = build->groom->info.strand_count;
+    build->features = ARENA_PUSH(memory, float, strands *CLUSTER_FEATURES);
+    build->clusters.features = build->features;
+    build->clusters.order = ARENA_PUSH(memory, uint32_t, strands);
+    build->clusters.part = ARENA_PUSH(memory, uint32_t, strands);
+    build->clusters.moved = ARENA_PUSH(memory, uint32_t, strands);
+    build->clusters.nearest = ARENA_PUSH(memory, double, strands);
+    build->gc_first = ARENA_PUSH(memory, uint32_t, build->groom->gc_count);
+    build->length_m = ARENA_PUSH(memory, double, strands);
+}
+
+static bool take_memory(groom_build *build)
+{
+    arena counting = arena_counting();
+    lay_out_groom(build->groom, &counting);
+    if (counting.overflowed || !arena_init(&build->groom->memory, counting.used)) {
+        return false;
+    }
+    lay_out_groom(build->groom, &build->groom->memory);
+    build->groom->info.bytes = sizeof *build->groom + build->groom->memory.size;
+
+    counting = arena_counting();
+    lay_out_scratch(build, &counting);
+    if (counting.overflowed || !arena_init(&build->memory, counting.used)) {
+        return false;
+    }
+    lay_out_scratch(build, &build->memory);
+    return true;
+}
+
+/* The power of two nearest to what gives the whole hair COARSE_NODE_KG a coarse node. */
+static void choose_mass_unit(awt_groom *groom)
+{
+    const double section_strands = (double)groom->info.strand_count * groom->info.sections;
+    const double wanted = COARSE_NODE_KG * groom->info.coarse_nodes / section_strands;
+    double unit = 1.0;
+    while (unit > wanted) {
+        unit *= 0.5;
+    }
+    unit = wanted * wanted > 2.0 * unit * unit ? 2.0 * unit : unit; /* past the geometric mean of the two */
+    groom->mass_unit_kg = (float)unit;
+    groom->info.mass_kg = section_strands * unit;
+}
+
+static int compare_lengths(const void *a, const void *b)
+{
+    double x, y;
+    memcpy(&x, a, sizeof x);
+    memcpy(&y, b, sizeof y);
+    return (x > y) - (x < y);
+}
+
+static void describe_lengths(groom_build *build)
+{
+    awt_groom_info *info = &build->groom->info;
+    qsort(build->length_m, info->strand_count, sizeof *build->length_m, compare_lengths);
+    info->longest_strand_m = build->length_m[info->strand_count - 1];
+    info->median_strand_m = build->length_m[info->strand_count / 2];
+}
+
+static void describe_radii(awt_groom *groom)
+{
+    for (uint32_t level = 0; level < groom->info.levels; level++) {
+        size_t first = (size_t)groom->level_first[level] * groom->info.sections;
+        size_t end = (size_t)groom->level_first[level + 1] * groom->info.sections;
+        double sum = 0.0;
+        for (size_t node = first; node < end; node++) {
+            sum += (double)groom->rest_radius[node];
+        }
+        groom->info.mean_radius_m[level] = sum / (double)(end - first);
+    }
+}
+
+/* The roots' bounds, grown by the longest strand under strain or by what a wisp can swing out, if that is more; never
+ * smaller than the head (CONTRACT.md, Geometry). */
+static void describe_box(groom_build *build)
+{
+    awt_groom_info *info = &build->groom->info;
+    double by_strand = info->longest_strand_m * BUILD_STRAIN * BUILD_STRAIN;
+    double margin = by_strand > build->reach_m ? by_strand : build->reach_m;
+    for (int axis = 0; axis < 3; axis++) {
+        double least = 0.0, most = 0.0;
+        for (uint32_t s = 0; s < info->strand_count; s++) {
+            double root = (double)build->strands->positions[3 * (size_t)build->strands->first_point[s] + (size_t)axis];
+            least = s == 0 || root < least ? root : least;
+            most = s == 0 || root > most ? root : most;
+        }
+        least -= margin, most += margin;
+        info->box_min[axis] = (float)(least < -info->head_radius_m ? least : -info->head_radius_m);
+        info->box_max[axis] = (float)(most > info->head_radius_m ? most : info->head_radius_m);
+    }
+}
+
+awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
+                           void (*progress)(void *context, double share), void *context, awt_groom **out,
+                           awt_error *error)
+{
+    groom_build build = {.strands = strands, .progress = progress, .context = context};
+    groom_plan plan;
+    *out = NULL;
+    awt_status status = plan_make(strands, def, &plan, error);
+    if (status != AWT_OK) {
+        return status;
+    }
+    build.groom = calloc(1, sizeof *build.groom);
+    if (!build.groom) {
+        goto fail;
+    }
+    take_plan(build.groom, &plan);
+    if (!take_memory(&build)) {
+        goto fail;
+    }
+    hierarchy_build(&build);
+    fit_wisps(&build);
+    bind_strands(&build);
+    choose_mass_unit(build.groom);
+    describe_lengths(&build);
+    describe_radii(build.groom);
+    describe_box(&build);
+    arena_fini(&build.memory);
+    build_report(&build, 1.0);
+    *out = build.groom;
+    return AWT_OK;
+
+fail:
+    arena_fini(&build.memory);
+    awt_groom_destroy(build.groom);
+    return error_set(error, AWT_NO_MEMORY, NULL);
+}
+
+void awt_groom_destroy(awt_groom *groom)
+{
+    if (groom) {
+        arena_fini(&groom->memory);
+        free(groom);
+    }
+}
+
+void awt_groom_get_info(const awt_groom *groom, awt_groom_info *info)
+{
+    *info = groom->info;
+}

@@ -1,0 +1,50 @@
+/* build.h: what the stages of awt_groom_build share. Each stage fills its part of the groom, in this order:
+ * hierarchy (which strands make which wisp), fit (curves, radii and frames of the wisps), bind (strands to wisps). */
+#ifndef GROOM_BUILD_H
+#define GROOM_BUILD_H
+
+#include "groom/cluster.h"
+#include "groom/groom.h"
+#include "groom/polyline.h"
+
+typedef struct groom_build {
+    awt_groom *groom; /* sizes stand in its info */
+    const awt_strands *strands;
+
+    /* scratch of the build */
+    arena memory;
+    cluster_set clusters; /* clusters.order[k]: the input's number of the groom's strand k */
+    float *features;      /* [strands][CLUSTER_FEATURES] */
+    uint32_t *gc_first;   /* [gc_count]; first strand, in the groom's order */
+    double *length_m;     /* [strands], in the groom's order */
+    double reach_m;       /* farthest that a stretched wisp takes a strand point from the wisp's root */
+
+    void (*progress)(void *context, double share);
+    void *context;
+} groom_build;
+
+static inline void build_report(const groom_build *build, double share)
+{
+    if (build->progress) {
+        build->progress(build->context, share);
+    }
+}
+
+/* Measures strand k of the groom's order. */
+static inline void build_measure(const groom_build *build, uint32_t k, polyline *line)
+{
+    const awt_strands *strands = build->strands;
+    uint32_t s = build->clusters.order[k], first = strands->first_point[s];
+    polyline_measure(line, strands->positions + 3 * (size_t)first, strands->first_point[s + 1] - first);
+}
+
+#define BUILD_STRAIN 1.25 /* what a moving strand may be longer than at rest (CONTRACT.md, Geometry) */
+
+/* Fills gc_super .. gc_strand_count, gc_strand_first and the order of the strands. Reports 0 .. 0.4. */
+void hierarchy_build(groom_build *build);
+/* Fills rest_position, rest_radius and rest_frame. Reports 0.4 .. 0.7. */
+void fit_wisps(groom_build *build);
+/* Fills strand_station, strand_offset, length_m and reach_m. Reports 0.7 .. 1. */
+void bind_strands(groom_build *build);
+
+#endif

@@ -1,0 +1,47 @@
+/* groom.h: the groom's insides, shared by what builds it (core/groom) and what moves it (core/sim).
+ *
+ * Generalised cylinders (GCs) are numbered level by level, coarsest first; the sub-GCs of a GC are
+ * contiguous, and so is each tree (top-level GC) at every level. Node (g, i), cross-section i of GC g, has
+ * index g * sections + i. Strands are ordered by their finest GC. */
+#ifndef GROOM_GROOM_H
+#define GROOM_GROOM_H
+
+#include "awt.h"
+#include "base/arena.h"
+#include "base/vec.h"
+
+enum { GROOM_TABLE_PER_SEGMENT = 2 }; /* strand points are bound to this many stations per segment (evaluate.h) */
+
+struct awt_groom {
+    awt_groom_info info;
+    arena memory; /* holds every array below */
+
+    uint32_t gc_count;                        /* all levels */
+    uint32_t level_first[AWT_MAX_LEVELS + 1]; /* GCs of level l: level_first[l] .. level_first[l+1]-1 */
+    uint32_t *gc_super;                       /* [gc_count]; of a top-level GC: itself */
+    uint32_t *gc_sub_first;                   /* [gc_count]; of a finest GC: 0 */
+    uint32_t *gc_sub_count;                   /* [gc_count]; of a finest GC: 0 */
+    uint32_t *gc_tree;                        /* [gc_count]; the top-level GC above, = its tree's number */
+    uint32_t *gc_strand_count;                /* [gc_count] */
+
+    /* nodes, [gc_count * sections] */
+    vec3 *rest_position; /* head frame; a super-node stands at the centre of mass of its sub-nodes */
+    float *rest_radius;  /* contains the sub-nodes' sections */
+
+    float mass_unit_kg; /* a power of two; a node weighs gc_strand_count * mass_unit_kg, exactly */
+
+    /* finest level */
+    quat *rest_frame; /* [finest GCs * sections]; section frame to head frame, e_y along the wisp */
+
+    /* strands, binding to the stations of their finest GC (evaluate.h) */
+    uint32_t *gc_strand_first; /* [finest GCs + 1] */
+    uint16_t *strand_station;  /* [strands * points]; station along the GC */
+    vec3 *strand_offset;       /* [strands * points]; in the station's frame */
+};
+
+static inline uint32_t groom_finest_first(const awt_groom *groom)
+{
+    return groom->level_first[groom->info.levels - 1];
+}
+
+#endif

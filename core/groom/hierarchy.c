@@ -1,0 +1,85 @@
+/* hierarchy.c: strands into trees of wisps (AWT §2.1): clustered by root place and shape into the top-level GCs, each
+ * of them into sub-GCs, level by level. The strands of a GC stay together at every further level, so each GC is a run
+ * of strands, sub-GCs are contiguous, and numbers follow from the order. */
+#include "groom/build.h"
+
+#include <string.h>
+
+/* How much the root and the points at one, two and three thirds of the length count. Tips least: strands of one lock
+ * differ most in length. */
+static const float feature_weight[4] = {1.6f, 1.0f, 0.7f, 0.4f};
+
+static void describe_strands(groom_build *build)
+{
+    polyline line;
+    for (uint32_t s = 0; s < build->groom->info.strand_count; s++) {
+        build->clusters.order[s] = s;
+        build_measure(build, s, &line);
+        vec3 third[4];
+        polyline_sample(&line, 4, third);
+        float *features = build->features + (size_t)s * CLUSTER_FEATURES;
+        for (int i = 0; i < 4; i++) {
+            features[3 * i + 0] = third[i].x * feature_weight[i];
+            features[3 * i + 1] = third[i].y * feature_weight[i];
+            features[3 * i + 2] = third[i].z * feature_weight[i];
+        }
+    }
+}
+
+/* Where the strands of each GC of a level begin, and the tree of each. */
+static void number_level(groom_build *build, uint32_t level)
+{
+    awt_groom *groom = build->groom;
+    uint32_t strand = 0;
+    for (uint32_t g = groom->level_first[level]; g < groom->level_first[level + 1]; g++) {
+        build->gc_first[g] = strand;
+        strand += groom->gc_strand_count[g];
+        groom->gc_tree[g] = level == 0 ? g : groom->gc_tree[groom->gc_super[g]];
+    }
+}
+
+static void build_top_level(groom_build *build)
+{
+    awt_groom *groom = build->groom;
+    cluster_split(&build->clusters, 0, groom->info.strand_count, groom->info.wisp_count[0], groom->gc_strand_count);
+    for (uint32_t g = 0; g < groom->info.wisp_count[0]; g++) {
+        groom->gc_super[g] = g;
+    }
+    number_level(build, 0);
+}
+
+/* Sub-GCs are shared out by strand count; each gets at least one strand. */
+static void refine_level(groom_build *build, uint32_t level)
+{
+    awt_groom *groom = build->groom;
+    const uint32_t first = groom->level_first[level], end = groom->level_first[level + 1];
+    cluster_share(groom->gc_strand_count + first, end - first, groom->info.wisp_count[level + 1],
+                  groom->gc_sub_count + first);
+    uint32_t sub = end;
+    for (uint32_t g = first; g < end; g++) {
+        cluster_split(&build->clusters, build->gc_first[g], groom->gc_strand_count[g], groom->gc_sub_count[g],
+                      groom->gc_strand_count + sub);
+        groom->gc_sub_first[g] = sub;
+        for (uint32_t k = 0; k < groom->gc_sub_count[g]; k++) {
+            groom->gc_super[sub++] = g;
+        }
+    }
+    number_level(build, level + 1);
+}
+
+void hierarchy_build(groom_build *build)
+{
+    awt_groom *groom = build->groom;
+    build_report(build, 0.0);
+    describe_strands(build);
+    build_report(build, 0.1);
+    build_top_level(build);
+    for (uint32_t level = 0; level + 1 < groom->info.levels; level++) {
+        build_report(build, 0.2 + 0.2 * level / groom->info.levels);
+        refine_level(build, level);
+    }
+    const uint32_t finest = groom->info.wisp_count[groom->info.levels - 1];
+    memcpy(groom->gc_strand_first, build->gc_first + groom_finest_first(groom), finest * sizeof(uint32_t));
+    groom->gc_strand_first[finest] = groom->info.strand_count;
+    build_report(build, 0.4);
+}
