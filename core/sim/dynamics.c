@@ -1,0 +1,80 @@
+/* dynamics.c: see dynamics.h. Everything that could be stiff (style, drag) is implicit: no value within the parameters'
+ * ranges can blow up. */
+#include "sim/dynamics.h"
+
+#include "sim/style.h"
+
+/* The turn of every segment from rest to now, and its tangent. */
+static void dynamics_turns(awt_forest *f, const tree *t)
+{
+    f->turn[t->first] = f->head;
+    f->tangent[t->first] = mat3_apply(f->head, f->active_rest_tangent[t->first]);
+    quat head = quat_of_dquat(f->pose[TRACK_HEAD].orientation);
+    for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
+        vec3 x = f->position[f->active_node[k]], parent = f->position[f->active_node[f->active_parent[k]]];
+        vec3 along = vec3_unit(vec3_sub(x, parent), f->tangent[f->active_parent[k]]);
+        f->tangent[k] = along;
+        quat bend = quat_between(f->active_rest_tangent[k], forest_to_head(f, along));
+        f->turn[k] = mat3_of_quat(quat_mul(head, bend));
+    }
+}
+
+/* The velocities with which the step begins, in f->next; the root's is the head's. */
+static void dynamics_begin(awt_forest *f, const tree *t, float dt_s)
+{
+    uint32_t root = f->active_node[t->first];
+    vec3 root_end = mat3_apply(f->head, f->groom->rest_position[root]);
+    f->next[t->first] = vec3_scale(vec3_sub(root_end, f->position[root]), 1.0f / dt_s);
+    for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
+        f->next[k] = f->velocity[f->active_node[k]];
+    }
+}
+
+/* Gravity, the style's share of it, the moving frame's inertia, and drag; then velocities become positions. */
+static void dynamics_drift(awt_forest *f, const tree *t, float dt_s)
+{
+    const awt_params *p = &f->params;
+    vec3 gravity = {p->gravity_x, p->gravity_y, p->gravity_z}, wind = {p->wind_x, p->wind_y, p->wind_z};
+    vec3 outside = vec3_mad(vec3_sub(gravity, f->frame_acceleration), wind, p->drag);
+    float slowing = 1.0f / (1.0f + dt_s * p->drag);
+    f->next[t->first] = vec3_mad(f->position[f->active_node[t->first]], f->next[t->first], dt_s);
+    for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
+        vec3 preload = mat3_apply(f->head, f->active_preload[k]);
+        vec3 velocity = vec3_scale(vec3_mad(f->next[k], vec3_add(outside, preload), dt_s), slowing);
+        f->next[k] = vec3_mad(f->position[f->active_node[k]], velocity, dt_s);
+    }
+}
+
+void dynamics_predict(awt_forest *f, const tree *t, float dt_s)
+{
+    dynamics_turns(f, t);
+    dynamics_begin(f, t, dt_s);
+    style_resolve(f, t, dt_s); /* first: it must not see velocities that the links are about to take away */
+    dynamics_drift(f, t, dt_s);
+}
+
+uint32_t dynamics_finish(awt_forest *f, const tree *t, float dt_s)
+{
+    const awt_params *p = &f->params;
+    float filter = relaxation_share(dt_s, p->acceleration_tau);
+    float relax = relaxation_share(dt_s, p->length_relaxation);
+    float limit2 = p->speed_limit * p->speed_limit;
+    uint32_t clamped = 0;
+    for (uint32_t k = t->first; k < t->first + t->count; k++) {
+        uint32_t node = f->active_node[k];
+        vec3 before = f->velocity[node];
+        vec3 velocity =
+            k > t->first && f->touching[k] ? before : vec3_scale(vec3_sub(f->next[k], f->position[node]), 1.0f / dt_s);
+        float speed2 = vec3_dot(velocity, velocity);
+        if (speed2 > limit2) {
+            velocity = vec3_scale(velocity, p->speed_limit / sqrtf(speed2));
+            clamped++;
+        }
+        vec3 acceleration = vec3_mad(f->frame_acceleration, vec3_sub(velocity, before), 1.0f / dt_s);
+        f->acceleration[node] = vec3_lerp(f->acceleration[node], acceleration, filter);
+        f->velocity[node] = velocity;
+        f->position[node] = f->next[k];
+        f->link_length[node] += (f->active_rest_length[k] - f->link_length[node]) * relax;
+    }
+    return clamped;
+}

@@ -1,0 +1,95 @@
+/* step.c: one sub-step, as PHYSICS.md lists it: poses, forces, links, obstacles, velocities, adaptation. */
+#include "sim/step.h"
+
+#include "sim/adapt.h"
+#include "sim/dynamics.h"
+#include "sim/embed.h"
+#include "sim/links.h"
+#include "sim/obstacle.h"
+
+#include <string.h>
+
+/* A change of velocity beyond this in one sub-step is taken for a teleport, flagged or not (CONTRACT.md). */
+#define STEP_TELEPORT_M_S 30.0
+
+void step_orient(awt_forest *f)
+{
+    f->head = mat3_of_quat(quat_of_dquat(f->pose[TRACK_HEAD].orientation));
+}
+
+/* The state turns with the head as one solid; in a frame that rides on the head there is nothing else to do. */
+static void step_carry(awt_forest *f, dquat from, dquat to)
+{
+    mat3 turn = mat3_of_quat(quat_of_dquat(dquat_unit(dquat_mul(to, dquat_conjugate(from)))));
+    for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
+        for (uint32_t k = f->trees[t].first; k < f->trees[t].first + f->trees[t].count; k++) {
+            uint32_t node = f->active_node[k];
+            f->position[node] = mat3_apply(turn, f->position[node]);
+            f->velocity[node] = mat3_apply(turn, f->velocity[node]);
+            f->acceleration[node] = mat3_apply(turn, f->acceleration[node]);
+        }
+    }
+}
+
+/* Poses at the end of the sub-step, and what their change means in the moving frame. */
+static void step_pose(awt_forest *f, double sample_us, float dt_s)
+{
+    track_pose before[TRACK_COUNT];
+    memcpy(before, f->pose, sizeof before);
+    bool teleported = track_sample(&f->track, sample_us, f->pose);
+    const track_pose *head = &f->pose[TRACK_HEAD], *head_before = &before[TRACK_HEAD];
+    dvec3 velocity = dvec3_scale(dvec3_sub(head->position, head_before->position), 1.0 / (double)dt_s);
+    dvec3 change = dvec3_sub(velocity, f->frame_velocity);
+    if (teleported || dvec3_length(change) > STEP_TELEPORT_M_S) {
+        step_carry(f, head_before->orientation, head->orientation);
+        memcpy(before, f->pose, sizeof before);
+        velocity = change = (dvec3){0, 0, 0};
+    }
+    f->frame_velocity = velocity;
+    f->frame_acceleration = vec3_of_dvec3(dvec3_scale(change, 1.0 / (double)dt_s));
+    obstacle_place(f, before, dt_s);
+    f->head_spin = track_spin(before[TRACK_HEAD].orientation, head->orientation, (double)dt_s);
+    step_orient(f);
+}
+
+/* Greatest |length - target| / target of the tree's links; a link under 5 mm counts as 5 mm long, because positions
+ * are floats that step by 0.03 um. */
+static float step_link_error(const awt_forest *f, const tree *t)
+{
+    float worst = 0.0f;
+    for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
+        float target = f->link_length[f->active_node[k]];
+        float length = vec3_distance(f->next[k], f->next[f->active_parent[k]]);
+        float error = fabsf(length - target) / (target > 0.005f ? target : 0.005f);
+        worst = error > worst ? error : worst;
+    }
+    return worst;
+}
+
+static void step_tree(awt_forest *f, uint32_t index, float dt_s, awt_step_stats *stats)
+{
+    const tree *t = &f->trees[index];
+    dynamics_predict(f, t, dt_s);
+    links_project(f, t);
+    stats->unreached_contacts += obstacle_settle(f, t);
+    float error = step_link_error(f, t);
+    stats->link_error = error > stats->link_error ? error : stats->link_error;
+    stats->clamped_speeds += dynamics_finish(f, t, dt_s);
+    embed_relax(f, t, dt_s);
+}
+
+void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_step_stats *stats)
+{
+    const uint32_t trees = f->groom->info.wisp_count[0];
+    step_pose(f, sample_us, dt_s);
+    for (uint32_t t = 0; t < trees; t++) {
+        step_tree(f, t, dt_s, stats);
+    }
+    f->time_us = end_us;
+    for (uint32_t t = 0; t < trees; t++) {
+        adapt_counts counts = adapt_tree(f, t);
+        stats->splits += counts.splits;
+        stats->merges += counts.merges;
+    }
+    stats->steps++;
+}
