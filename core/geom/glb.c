@@ -1,0 +1,278 @@
+/* glb.c: see glb.h. The container first (lengths against what is there), then the JSON (every index and count against
+ * what they index and count), the geometry itself never: that is draco_shim.h's. */
+#include "geom/glb.h"
+
+#include "base/error.h"
+#include "geom/json.h"
+#include "geom/ribbon.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { GLB_HEADER = 12, GLB_CHUNK_HEADER = 8, GLB_TRIANGLES = 4, GLB_U16 = 5123, GLB_F32 = 5126 };
+#define GLB_MAGIC UINT32_C(0x46546C67)
+#define GLB_JSON UINT32_C(0x4E4F534A)
+#define GLB_BINARY UINT32_C(0x004E4942)
+/* Greatest time that a JSON number holds to the microsecond. */
+#define GLB_MAX_TIME_US 9007199254740992.0
+
+static uint32_t take_u32(const unsigned char *p)
+{
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
+/* ---- container */
+
+typedef struct glb_chunk {
+    const unsigned char *bytes;
+    size_t size;
+} glb_chunk;
+
+/* The chunk of `type` that begins at *at. */
+static awt_status take_chunk(const unsigned char *bytes, size_t size, size_t *at, uint32_t type, glb_chunk *out,
+                             awt_error *error)
+{
+    if (size - *at < GLB_CHUNK_HEADER) {
+        return error_set(error, AWT_BAD_FORMAT, "the frame lacks its %s chunk", type == GLB_JSON ? "JSON" : "binary");
+    }
+    uint32_t length = take_u32(bytes + *at);
+    if (take_u32(bytes + *at + 4) != type || length % 4 != 0 || length > size - *at - GLB_CHUNK_HEADER) {
+        return error_set(error, AWT_BAD_FORMAT, "the frame's chunk at byte %zu is not what belongs there", *at);
+    }
+    *out = (glb_chunk){bytes + *at + GLB_CHUNK_HEADER, length};
+    *at += GLB_CHUNK_HEADER + length;
+    return AWT_OK;
+}
+
+static awt_status take_container(const unsigned char *bytes, size_t size, glb_chunk *json, glb_chunk *binary,
+                                 awt_error *error)
+{
+    if (size > GEOM_MAX_GLB) {
+        return error_set(error, AWT_LIMIT, "a frame has %d MiB at most", GEOM_MAX_GLB / (1024 * 1024));
+    }
+    if (size < GLB_HEADER) {
+        return error_set(error, AWT_TRUNCATED, "the frame ends within its first %d bytes", GLB_HEADER);
+    }
+    if (take_u32(bytes) != GLB_MAGIC || take_u32(bytes + 4) != 2) {
+        return error_set(error, AWT_BAD_FORMAT, "this is not a GLB 2.0 file");
+    }
+    if (take_u32(bytes + 8) > size) {
+        return error_set(error, AWT_TRUNCATED, "the frame ends at byte %zu of the %u it announces", size,
+                         take_u32(bytes + 8));
+    }
+    size_t at = GLB_HEADER;
+    awt_status status = take_chunk(bytes, size, &at, GLB_JSON, json, error);
+    if (status == AWT_OK) {
+        status = take_chunk(bytes, size, &at, GLB_BINARY, binary, error);
+    }
+    if (status == AWT_OK && (at != size || take_u32(bytes + 8) != size)) {
+        return error_set(error, AWT_BAD_FORMAT, "the frame has bytes after its end");
+    }
+    return status;
+}
+
+/* ---- JSON */
+
+/* An array's items by index. */
+typedef struct glb_items {
+    uint32_t *tokens; /* [count], heap */
+    uint32_t count;
+} glb_items;
+
+typedef struct glb_reader {
+    json_document json;
+    glb_items accessors, views;
+    size_t binary_size;
+} glb_reader;
+
+static bool index_items(const json_document *json, uint32_t array, glb_items *out)
+{
+    out->count = json_items(json, array);
+    out->tokens = calloc(out->count ? out->count : 1, sizeof *out->tokens);
+    if (!out->tokens) {
+        return false;
+    }
+    uint32_t at = array + 1;
+    for (uint32_t i = 0; i < out->count; i++, at = json->tokens[at].after) {
+        out->tokens[i] = at;
+    }
+    return true;
+}
+
+/* The item that a member names by its index. */
+static uint32_t item_of(const glb_reader *r, const glb_items *items, uint32_t object, const char *member)
+{
+    uint32_t index;
+    bool there = json_whole(&r->json, json_member(&r->json, object, member), &index) && index < items->count;
+    return there ? items->tokens[index] : JSON_NONE;
+}
+
+static bool whole_member(const glb_reader *r, uint32_t object, const char *member, uint32_t *out)
+{
+    return json_whole(&r->json, json_member(&r->json, object, member), out);
+}
+
+static bool whole_member_is(const glb_reader *r, uint32_t object, const char *member, uint32_t expected)
+{
+    uint32_t value;
+    return whole_member(r, object, member, &value) && value == expected;
+}
+
+static bool read_pose(const glb_reader *r, uint32_t node, awt_pose *head)
+{
+    double *q = head->orientation;
+    if (!json_reals(&r->json, json_member(&r->json, node, "translation"), 3, head->position) ||
+        !json_reals(&r->json, json_member(&r->json, node, "rotation"), 4, q)) {
+        return false;
+    }
+    double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return fabs(square - 1.0) < 1e-3;
+}
+
+static bool read_time(const glb_reader *r, int64_t *time_us)
+{
+    double time;
+    uint32_t extras = json_member(&r->json, json_member(&r->json, 0, "asset"), "extras");
+    if (!json_real(&r->json, json_member(&r->json, extras, "time_us"), &time) || fabs(time) > GLB_MAX_TIME_US) {
+        return false;
+    }
+    *time_us = (int64_t)time;
+    return (double)*time_us == time;
+}
+
+/* Strands first, for the counts of everything else follow from them. */
+static bool read_counts(const glb_reader *r, uint32_t node, glb_frame *out)
+{
+    uint32_t extras = json_member(&r->json, node, "extras");
+    return whole_member(r, extras, "strands", &out->strands) &&
+           whole_member(r, extras, "points_per_strand", &out->points_per_strand) && out->strands >= 1 &&
+           out->strands <= AWT_MAX_STRANDS && out->points_per_strand >= 2 &&
+           out->points_per_strand <= AWT_MAX_POINTS_PER_STRAND &&
+           (uint64_t)out->strands * out->points_per_strand <= AWT_MAX_POINTS;
+}
+
+static bool read_data_place(const glb_reader *r, uint32_t draco, glb_patch *patch)
+{
+    uint32_t view = item_of(r, &r->views, draco, "bufferView");
+    uint32_t offset = 0, size = 0;
+    uint32_t offset_member = json_member(&r->json, view, "byteOffset");
+    if (!whole_member_is(r, view, "buffer", 0) || !whole_member(r, view, "byteLength", &size) ||
+        (offset_member != JSON_NONE && !json_whole(&r->json, offset_member, &offset)) || offset > r->binary_size ||
+        size > r->binary_size - offset) {
+        return false;
+    }
+    patch->offset = offset;
+    patch->size = size;
+    return true;
+}
+
+static bool accessor_is(const glb_reader *r, uint32_t accessor, const char *type, uint32_t component, uint32_t count)
+{
+    return json_is_text(&r->json, json_member(&r->json, accessor, "type"), type) &&
+           whole_member_is(r, accessor, "componentType", component) && whole_member_is(r, accessor, "count", count);
+}
+
+/* One primitive, whose strands must begin with number `first`. */
+static bool read_patch(const glb_reader *r, uint32_t primitive, const glb_frame *frame, uint32_t first,
+                       glb_patch *patch)
+{
+    const json_document *json = &r->json;
+    uint32_t extras = json_member(json, primitive, "extras");
+    if (!whole_member_is(r, extras, "first_strand", first) || !whole_member(r, extras, "strands", &patch->strands) ||
+        patch->strands < 1 || patch->strands > frame->strands - first ||
+        patch->strands > GEOM_MAX_PATCH_VERTICES / (2 * frame->points_per_strand)) {
+        return false;
+    }
+    patch->first_strand = first;
+    patch->vertices = patch->strands * frame->points_per_strand * 2;
+    patch->triangles = ribbon_index_count(patch->strands, frame->points_per_strand) / 3;
+    uint32_t draco = json_member(json, json_member(json, primitive, "extensions"), "KHR_draco_mesh_compression");
+    uint32_t attributes = json_member(json, primitive, "attributes");
+    return whole_member_is(r, primitive, "mode", GLB_TRIANGLES) && read_data_place(r, draco, patch) &&
+           whole_member_is(r, json_member(json, draco, "attributes"), "POSITION", 0) &&
+           accessor_is(r, item_of(r, &r->accessors, attributes, "POSITION"), "VEC3", GLB_F32, patch->vertices) &&
+           accessor_is(r, item_of(r, &r->accessors, primitive, "indices"), "SCALAR", GLB_U16, patch->triangles * 3) &&
+           /* as libdraco does: no memory for triangles that the data cannot hold */
+           patch->triangles <= patch->size / 3;
+}
+
+static bool read_patches(const glb_reader *r, uint32_t primitives, glb_frame *out)
+{
+    uint32_t at = primitives + 1, strand = 0;
+    for (uint32_t i = 0; i < out->patch_count; i++, at = r->json.tokens[at].after) {
+        if (!read_patch(r, at, out, strand, &out->patches[i])) {
+            return false;
+        }
+        strand += out->patches[i].strands;
+    }
+    return strand == out->strands;
+}
+
+/* The one node, mesh and buffer that a frame of ours has. */
+static awt_status read_frame(glb_reader *r, glb_frame *out, awt_error *error)
+{
+    const json_document *json = &r->json;
+    uint32_t node = json_member(json, 0, "nodes"), mesh = json_member(json, 0, "meshes");
+    uint32_t buffer = json_member(json, 0, "buffers");
+    uint32_t buffer_size;
+    if (!json_is_text(json, json_member(json, json_member(json, 0, "asset"), "version"), "2.0") ||
+        json_items(json, node) != 1 || json_items(json, mesh) != 1 || json_items(json, buffer) != 1 ||
+        !json_is_text(json, json_member(json, node + 1, "name"), "hair") ||
+        !whole_member(r, buffer + 1, "byteLength", &buffer_size) || buffer_size > r->binary_size) {
+        return error_set(error, AWT_BAD_FORMAT,
+                         "this GLB is not a frame of awtd: it must have one node named \"hair\"");
+    }
+    r->binary_size = buffer_size;
+    if (!read_pose(r, node + 1, &out->head) || !read_time(r, &out->time_us) || !read_counts(r, node + 1, out)) {
+        return error_set(error, AWT_BAD_VALUE,
+                         "the frame's head pose, time or strand counts are missing or impossible");
+    }
+    uint32_t primitives = json_member(json, mesh + 1, "primitives");
+    out->patch_count = json_items(json, primitives);
+    if (out->patch_count < 1 || out->patch_count > out->strands) {
+        return error_set(error, AWT_BAD_FORMAT, "the frame has %u patches for %u strands", out->patch_count,
+                         out->strands);
+    }
+    out->patches = calloc(out->patch_count, sizeof *out->patches);
+    if (!out->patches || !index_items(json, json_member(json, 0, "accessors"), &r->accessors) ||
+        !index_items(json, json_member(json, 0, "bufferViews"), &r->views)) {
+        return error_set(error, AWT_NO_MEMORY, NULL);
+    }
+    if (!read_patches(r, primitives, out)) {
+        return error_set(error, AWT_BAD_FORMAT, "a patch of the frame does not fit its strands or its data");
+    }
+    return AWT_OK;
+}
+
+awt_status glb_read(const void *bytes, size_t size, glb_frame *out, awt_error *error)
+{
+    glb_chunk text = {0}, binary = {0};
+    glb_reader reader = {0};
+    *out = (glb_frame){0};
+    awt_status status = take_container(bytes, size, &text, &binary, error);
+    if (status != AWT_OK) {
+        return status;
+    }
+    reader.binary_size = binary.size;
+    status = json_read((const char *)text.bytes, text.size, &reader.json, error);
+    if (status == AWT_OK) {
+        status = read_frame(&reader, out, error);
+    }
+    json_fini(&reader.json);
+    free(reader.accessors.tokens);
+    free(reader.views.tokens);
+    if (status != AWT_OK) {
+        glb_frame_fini(out);
+        return status;
+    }
+    out->binary = binary.bytes;
+    out->binary_size = binary.size;
+    return AWT_OK;
+}
+
+void glb_frame_fini(glb_frame *frame)
+{
+    free(frame->patches);
+    *frame = (glb_frame){0};
+}

@@ -1,0 +1,174 @@
+/* glb_shim.cc: see glb_shim.h. */
+#include "geom/glb_shim.h"
+
+#include "base/error.h"
+#include "geom/buffer.h"
+
+#include <tiny_gltf.h>
+
+#include <charconv>
+#include <new>
+#include <ostream>
+#include <streambuf>
+#include <string>
+
+namespace
+{
+
+const char *const DRACO_EXTENSION = "KHR_draco_mesh_compression";
+
+/* tinygltf writes to a stream; this one ends in our buffer. */
+class BufferSink : public std::streambuf
+{
+  public:
+    BufferSink(geom_buffer *buffer, awt_error *error) : buffer_(buffer), error_(error)
+    {
+    }
+
+    awt_status status() const
+    {
+        return status_;
+    }
+
+  protected:
+    std::streamsize xsputn(const char *bytes, std::streamsize size) override
+    {
+        if (status_ == AWT_OK) {
+            status_ = geom_buffer_append(buffer_, bytes, static_cast<size_t>(size), error_);
+        }
+        return status_ == AWT_OK ? size : 0;
+    }
+
+    int_type overflow(int_type c) override
+    {
+        char byte = traits_type::to_char_type(c);
+        return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
+    }
+
+  private:
+    geom_buffer *buffer_;
+    awt_error *error_;
+    awt_status status_ = AWT_OK;
+};
+
+tinygltf::Value whole(uint32_t number)
+{
+    return tinygltf::Value(static_cast<int>(number)); /* all of ours are far below 2^31 */
+}
+
+using Members = tinygltf::Value::Object;
+
+/* Accessors without a bufferView: what they would view is in the Draco data. */
+int add_accessor(tinygltf::Model *model, int type, int component_type, size_t count)
+{
+    tinygltf::Accessor accessor;
+    accessor.type = type;
+    accessor.componentType = component_type;
+    accessor.count = count;
+    model->accessors.push_back(accessor);
+    return static_cast<int>(model->accessors.size()) - 1;
+}
+
+void add_patch(tinygltf::Model *model, tinygltf::Mesh *mesh, const glb_patch &patch)
+{
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = patch.offset;
+    view.byteLength = patch.size;
+    model->bufferViews.push_back(view);
+
+    tinygltf::Primitive primitive;
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    primitive.material = 0;
+    primitive.indices = add_accessor(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                                     static_cast<size_t>(patch.triangles) * 3);
+    int position = add_accessor(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, patch.vertices);
+    model->accessors.back().minValues.assign(patch.min, patch.min + 3);
+    model->accessors.back().maxValues.assign(patch.max, patch.max + 3);
+    primitive.attributes["POSITION"] = position;
+
+    Members draco;
+    draco["bufferView"] = whole(static_cast<uint32_t>(model->bufferViews.size()) - 1);
+    draco["attributes"] = tinygltf::Value(Members{{"POSITION", whole(0)}});
+    primitive.extensions[DRACO_EXTENSION] = tinygltf::Value(draco);
+    primitive.extras =
+        tinygltf::Value(Members{{"first_strand", whole(patch.first_strand)}, {"strands", whole(patch.strands)}});
+    mesh->primitives.push_back(primitive);
+}
+
+tinygltf::Material make_material()
+{
+    tinygltf::Material material;
+    material.name = "hair";
+    material.doubleSided = true;
+    material.pbrMetallicRoughness.baseColorFactor = {0.13, 0.07, 0.035, 1.0}; /* brown, linear */
+    material.pbrMetallicRoughness.metallicFactor = 0.0;
+    material.pbrMetallicRoughness.roughnessFactor = 0.55;
+    return material;
+}
+
+tinygltf::Node make_node(const glb_frame &frame)
+{
+    tinygltf::Node node;
+    node.name = "hair";
+    node.mesh = 0;
+    node.translation.assign(frame.head.position, frame.head.position + 3);
+    node.rotation.assign(frame.head.orientation, frame.head.orientation + 4);
+    node.extras = tinygltf::Value(
+        Members{{"strands", whole(frame.strands)}, {"points_per_strand", whole(frame.points_per_strand)}});
+    return node;
+}
+
+void fill_model(tinygltf::Model *model, const glb_frame &frame)
+{
+    model->asset.version = "2.0";
+    model->asset.generator = "awtd";
+    /* tinygltf's whole numbers have 32 bits; a double holds every microsecond of 285 years */
+    model->asset.extras = tinygltf::Value(Members{{"time_us", tinygltf::Value(static_cast<double>(frame.time_us))}});
+    model->extensionsUsed = {DRACO_EXTENSION};
+    model->extensionsRequired = {DRACO_EXTENSION};
+    model->materials = {make_material()};
+
+    tinygltf::Mesh mesh;
+    mesh.name = "hair";
+    for (uint32_t i = 0; i < frame.patch_count; i++) {
+        add_patch(model, &mesh, frame.patches[i]);
+    }
+    model->meshes = {mesh};
+    model->nodes = {make_node(frame)};
+    tinygltf::Scene scene;
+    scene.nodes = {0};
+    model->scenes = {scene};
+    model->defaultScene = 0;
+
+    model->buffers.resize(1);
+    model->buffers[0].data.assign(frame.binary, frame.binary + frame.binary_size);
+}
+
+} // namespace
+
+awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *error)
+{
+    try {
+        tinygltf::Model model;
+        fill_model(&model, *frame);
+        BufferSink sink(out, error);
+        std::ostream stream(&sink);
+        tinygltf::TinyGLTF writer;
+        bool written = writer.WriteGltfSceneToStream(&model, stream, false, true);
+        if (sink.status() != AWT_OK) {
+            return sink.status();
+        }
+        return written ? AWT_OK : error_set(error, AWT_BAD_VALUE, "tinygltf cannot write this frame");
+    } catch (const std::bad_alloc &) {
+        return error_set(error, AWT_NO_MEMORY, nullptr);
+    } catch (...) {
+        return error_set(error, AWT_BAD_VALUE, "tinygltf cannot write this frame");
+    }
+}
+
+bool glb_shim_number(const char *begin, const char *end, double *out)
+{
+    std::from_chars_result result = std::from_chars(begin, end, *out);
+    return result.ec == std::errc() && result.ptr == end;
+}

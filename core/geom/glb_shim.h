@@ -1,0 +1,42 @@
+/* glb_shim.h: a frame's patches and pose into a GLB, through tinygltf. C types; no exception gets out.
+ * (glb.h reads one back without tinygltf, whose loader does not check a stranger's file.) */
+#ifndef GEOM_GLB_SHIM_H
+#define GEOM_GLB_SHIM_H
+
+#include "geom/encode.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One primitive of the mesh. */
+typedef struct glb_patch {
+    uint32_t first_strand, strands;
+    uint32_t vertices, triangles;
+    float min[3], max[3]; /* of the positions as a decoder gives them back */
+    size_t offset, size;  /* its Draco data in the binary chunk */
+} glb_patch;
+
+/* What a GLB of ours says. */
+typedef struct glb_frame {
+    uint32_t strands, points_per_strand;
+    glb_patch *patches; /* [patch_count] */
+    uint32_t patch_count;
+    const unsigned char *binary; /* [binary_size], the binary chunk */
+    size_t binary_size;
+    awt_pose head; /* orientation of length 1 */
+    int64_t time_us;
+} glb_frame;
+
+/* Appends the frame as a GLB. AWT_NO_MEMORY, AWT_LIMIT. */
+awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *error);
+
+/* Reads a JSON number that fills the text from `begin` to `end`, whatever decimal point the host program's locale
+ * asks of strtod. False: it is none. */
+bool glb_shim_number(const char *begin, const char *end, double *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

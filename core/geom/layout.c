@@ -1,0 +1,172 @@
+/* layout.c: patches, widths, quantisation box and indices of a groom's frames, made once.
+ *
+ * Patches are whole wisp trees because a tree sleeps as a whole: what does not move need not be encoded again. The
+ * quantisation box is fixed for the same reason, and because a box that follows the frame makes resting hair shimmer.
+ */
+#include "geom/layout.h"
+
+#include "base/assert.h"
+#include "base/error.h"
+#include "groom/groom.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Full width of a ribbon at its middle, for AWT_DEFAULT_STRANDS strands on a head of AWT_HEAD_RADIUS_M: a ribbon
+ * stands for the dozen hairs that a real head has for each of ours. Fewer strands are wider, so that the hair covers
+ * the same part of the head, though no wider than a lock. */
+#define WIDTH_M 0.0016f
+#define WIDTH_GREATEST_M 0.005f
+/* A ribbon narrower than this many quantisation steps loses its shape (STREAM.md, traps). */
+#define WIDTH_LEAST_STEPS 4.0f
+/* Draco's stock encoder takes origin and range as text of six decimals; multiples of 1/64 pass through unchanged. */
+#define BOX_GRID 64.0f
+
+/* Share of the middle width at t in [0, 1] from root to tip. */
+static float width_profile(float t)
+{
+    if (t < 0.15f) {
+        return 0.7f + 2.0f * t;
+    }
+    if (t < 0.5f) {
+        return 1.0f;
+    }
+    float u = (t - 0.5f) * 2.0f;
+    return 1.0f - 0.9f * u * u;
+}
+
+static float middle_half_width(const awt_groom_info *info)
+{
+    float head = (float)(info->head_radius_m / AWT_HEAD_RADIUS_M);
+    float density = sqrtf((float)AWT_DEFAULT_STRANDS / (float)info->strand_count);
+    float width = WIDTH_M * head * density;
+    float greatest = WIDTH_GREATEST_M * head;
+    return 0.5f * (width < greatest ? width : greatest);
+}
+
+/* The groom's box, made a cube, with room for half a ribbon around it. */
+static draco_box make_box(const awt_groom_info *info, float half_width)
+{
+    draco_box box = {.bits = GEOM_RIBBON_BITS};
+    float widest = 0;
+    for (int k = 0; k < 3; k++) {
+        float extent = info->box_max[k] - info->box_min[k];
+        widest = extent > widest ? extent : widest;
+    }
+    float margin =
+        half_width + (widest + 2 * half_width + 1.0f / BOX_GRID) * (WIDTH_LEAST_STEPS / (1 << GEOM_RIBBON_BITS));
+    for (int k = 0; k < 3; k++) {
+        box.origin[k] = floorf((info->box_min[k] - margin) * BOX_GRID) / BOX_GRID;
+        float extent = ceilf((info->box_max[k] + margin - box.origin[k]) * BOX_GRID) / BOX_GRID;
+        box.range = extent > box.range ? extent : box.range;
+    }
+    return box;
+}
+
+static void fill_widths(geom_layout *layout, float middle)
+{
+    float least = 0.5f * WIDTH_LEAST_STEPS * draco_box_step(&layout->box);
+    for (uint32_t i = 0; i < layout->points_per_strand; i++) {
+        float half = middle * width_profile((float)i / (float)(layout->points_per_strand - 1));
+        layout->half_width[i] = half > least ? half : least;
+    }
+}
+
+/* Adds `strands` to the last patch, or opens a new one where they do not fit. */
+static void add_strands(geom_layout *layout, uint32_t first_strand, uint32_t strands, uint32_t room)
+{
+    geom_patch *last = layout->patch_count > 0 ? &layout->patches[layout->patch_count - 1] : NULL;
+    if (last && last->strands + strands <= room) {
+        last->strands += strands;
+        return;
+    }
+    layout->patches[layout->patch_count++] = (geom_patch){first_strand, strands};
+}
+
+static void fill_patches(geom_layout *layout, const awt_groom *groom, uint32_t room)
+{
+    const uint32_t finest = groom->info.wisp_count[groom->info.levels - 1];
+    const uint32_t *tree = groom->gc_tree + groom_finest_first(groom);
+    for (uint32_t g = 0; g < finest;) {
+        uint32_t after = g + 1;
+        while (after < finest && tree[after] == tree[g]) {
+            after++;
+        }
+        uint32_t strand = groom->gc_strand_first[g];
+        for (uint32_t left = groom->gc_strand_first[after] - strand; left > 0;) {
+            uint32_t taken = left < room ? left : room;
+            add_strands(layout, strand, taken, room);
+            strand += taken;
+            left -= taken;
+        }
+        g = after;
+    }
+}
+
+/* Two neighbouring patches hold more than one patch's room, or they would be one. */
+static uint32_t patch_bound(uint32_t strands, uint32_t room)
+{
+    return 2 * (strands / room) + 2;
+}
+
+awt_status geom_layout_create(const awt_groom *groom, geom_layout **out, awt_error *error)
+{
+    const awt_groom_info *info = &groom->info;
+    const uint32_t per_strand = info->points_per_strand;
+    *out = NULL;
+    if (info->strand_count < 1 || info->strand_count > AWT_MAX_STRANDS || per_strand < 2 ||
+        per_strand > AWT_MAX_POINTS_PER_STRAND) {
+        return error_set(error, AWT_LIMIT, "a frame holds 1 to %d strands of 2 to %d points, not %u of %u",
+                         AWT_MAX_STRANDS, AWT_MAX_POINTS_PER_STRAND, info->strand_count, per_strand);
+    }
+    const uint32_t room = GEOM_MAX_PATCH_VERTICES / (2 * per_strand);
+    geom_layout *layout = calloc(1, sizeof *layout);
+    if (!layout) {
+        goto fail;
+    }
+    layout->strands = info->strand_count;
+    layout->points_per_strand = per_strand;
+    layout->half_width = calloc(per_strand, sizeof *layout->half_width);
+    layout->patches = calloc(patch_bound(info->strand_count, room), sizeof *layout->patches);
+    if (!layout->half_width || !layout->patches) {
+        goto fail;
+    }
+    layout->box = make_box(info, middle_half_width(info));
+    fill_widths(layout, middle_half_width(info));
+    layout->shape = (ribbon_shape){.points_per_strand = per_strand, .half_width = layout->half_width};
+    for (int k = 0; k < 3; k++) {
+        layout->shape.point_min[k] = info->box_min[k];
+        layout->shape.point_max[k] = info->box_max[k];
+    }
+    fill_patches(layout, groom, room);
+    ASSERT(layout->patch_count <= patch_bound(info->strand_count, room));
+    for (uint32_t i = 0; i < layout->patch_count; i++) {
+        uint32_t strands = layout->patches[i].strands;
+        layout->largest_patch = strands > layout->largest_patch ? strands : layout->largest_patch;
+    }
+    layout->indices = calloc(ribbon_index_count(layout->largest_patch, per_strand), sizeof *layout->indices);
+    if (!layout->indices) {
+        goto fail;
+    }
+    ribbon_indices(layout->largest_patch, per_strand, layout->indices);
+    *out = layout;
+    return AWT_OK;
+fail:
+    geom_layout_destroy(layout);
+    return error_set(error, AWT_NO_MEMORY, NULL);
+}
+
+void geom_layout_destroy(geom_layout *layout)
+{
+    if (layout) {
+        free(layout->half_width);
+        free(layout->patches);
+        free(layout->indices);
+        free(layout);
+    }
+}
+
+uint32_t geom_layout_patches(const geom_layout *layout)
+{
+    return layout->patch_count;
+}
