@@ -1,0 +1,419 @@
+/* awtctl_play.c: moves a head of hair through a clip. Lock-step: each frame is the head's pose at its time (MOTION),
+ * the question for the hair at that time (QUERY), and its answer; nothing runs ahead, so every run of the same clip
+ * shows the same hair.
+ *
+ * How long a frame took to go out is only known afterwards: the next one says it, and STATS says it of the last. A
+ * frame's line in the table waits for that. */
+#include "awtctl_play.h"
+
+#include "files.h"
+#include "progress.h"
+#include "socket.h"
+
+#include <math.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum {
+    PLAY_TIMEOUT_MS = 120000, /* building a large groom takes a while */
+    PLAY_MAX_FILE = 512 << 20,
+    PLAY_MAX_FRAMES = 1000000,
+    PLAY_FILES = 20,
+    PLAY_BUSY_TRIES = 100,
+    PLAY_BUSY_LEAST_MS = 20,
+    PLAY_BUSY_MOST_MS = 2000
+};
+
+typedef struct play {
+    play_plan plan;
+    play_record record;
+    motion motion;
+    awtclient *client;
+    FILE *text; /* the human side of the output: not where JSON goes */
+    size_t frame_count, every;
+    bool created; /* the forest is there */
+    progress progress;
+} play;
+
+/* Set by Ctrl-C and SIGTERM: the frame that is under way is the last one. A second one ends the program at once. */
+static volatile sig_atomic_t play_interrupted;
+
+static void play_interrupt(int number)
+{
+    (void)number;
+    play_interrupted = 1;
+}
+
+static void play_catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = play_interrupt, .sa_flags = SA_RESTART | (int)SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
+/* ---- before the first frame
+ * ------------------------------------------------------------------------------------------ */
+
+static bool play_load_motion(play *p)
+{
+    char text[512];
+    size_t size;
+    awt_error error;
+    const char *name = p->plan.motion;
+    if (motion_builtin(name, &p->motion)) {
+        return true;
+    }
+    unsigned char *bytes = files_read(name, PLAY_MAX_FILE, &size, text, sizeof text);
+    if (!bytes) {
+        awtctl_failed("%s (the built-in motions are lean, jump, run and shake)", text);
+        return false;
+    }
+    awt_status status = motion_read(bytes, size, &p->plan.motion_options, &p->motion, &error);
+    free(bytes);
+    if (status != AWT_OK) {
+        awtctl_failed("%s: %s", name, error.text);
+    }
+    return status == AWT_OK;
+}
+
+static int64_t play_time_us(const play *p, size_t frame)
+{
+    return llround((double)(frame + 1) * 1e6 / p->plan.fps);
+}
+
+/* How many frames, and which become files. */
+static bool play_count_frames(play *p)
+{
+    double length_s = (double)p->motion.samples[p->motion.sample_count - 1].time_us * 1e-6;
+    double frames = p->plan.frames > 0 ? (double)p->plan.frames : floor(length_s * p->plan.fps + 1e-6);
+    if (frames < 1 || frames > PLAY_MAX_FRAMES) {
+        awtctl_failed("the motion lasts %g s, which is %.0f frames at %g fps: give --frames from 1 to %d", length_s,
+                      frames, p->plan.fps, PLAY_MAX_FRAMES);
+        return false;
+    }
+    p->frame_count = (size_t)frames;
+    p->every = p->plan.every > 0 ? (size_t)p->plan.every : (p->frame_count + PLAY_FILES - 1) / PLAY_FILES;
+    p->record.frames = calloc(p->frame_count, sizeof *p->record.frames);
+    if (!p->record.frames) {
+        awtctl_failed("not enough memory for the figures of %zu frames", p->frame_count);
+    }
+    return p->record.frames != NULL;
+}
+
+static void play_upload_progress(void *context, double share)
+{
+    progress_show(context, share, "uploading");
+}
+
+static bool play_upload(play *p)
+{
+    char text[512];
+    size_t size;
+    awtclient_error error;
+    unsigned char *bytes = files_read(p->plan.groom, PLAY_MAX_FILE, &size, text, sizeof text);
+    if (!bytes) {
+        awtctl_failed("%s", text);
+        return false;
+    }
+    p->progress = progress_begin(stderr, p->plan.groom, p->plan.quiet);
+    bool sent = awtclient_upload(p->client, 1, bytes, size, play_upload_progress, &p->progress, &error);
+    progress_hide(&p->progress);
+    free(bytes);
+    if (!sent) {
+        awtctl_failed("%s: %s", p->plan.groom, error.text);
+    }
+    return sent;
+}
+
+static proto_pose pose_to_wire(const awt_pose *pose)
+{
+    proto_pose wire;
+    memcpy(wire.position, pose->position, sizeof wire.position);
+    memcpy(wire.orientation, pose->orientation, sizeof wire.orientation);
+    return wire;
+}
+
+static void play_fill_create(const play *p, struct proto_create *create)
+{
+    const play_plan *plan = &p->plan;
+    const char *slash = strrchr(p->record.source, '/'), *name = slash ? slash + 1 : p->record.source;
+    create->source = plan->groom ? 1 : 0;
+    create->style = proto_str_of(plan->style ? plan->style : "");
+    create->upload = 1;
+    create->name = strlen(name) <= 64 ? proto_str_of(name) : proto_str_of("a strand file");
+    create->seed = (uint64_t)plan->seed;
+    create->strands = (uint32_t)plan->strands;
+    create->scale = plan->scale;
+    create->up = (uint8_t)plan->up;
+    create->head_x = plan->head[0];
+    create->head_y = plan->head[1];
+    create->head_z = plan->head[2];
+    create->head_radius = plan->head[3];
+    create->params.count = (uint16_t)plan->param_count;
+    for (size_t i = 0; i < plan->param_count; i++) {
+        create->params.items[i].name = proto_str_of(plan->params[i].name);
+        create->params.items[i].value = plan->params[i].value;
+    }
+    motion_sample start = motion_at(&p->motion, 0);
+    create->head = pose_to_wire(&start.head);
+    create->body = pose_to_wire(&start.body);
+}
+
+static bool play_create(play *p)
+{
+    awtclient_error error;
+    proto_message request = {.type = PROTO_CREATE}, answer;
+    if (p->plan.style && strlen(p->plan.style) > 32) {
+        awtctl_failed("no style has so long a name (awtctl styles lists them)");
+        return false;
+    }
+    play_fill_create(p, &request.as.create);
+    if (!awtclient_call(p->client, &request, &answer, &error)) {
+        awtctl_failed("%s: %s", p->record.source, error.text);
+        return false;
+    }
+    p->record.forest = answer.as.create_reply;
+    p->created = true;
+    return true;
+}
+
+static bool play_prepare(play *p)
+{
+    char text[512];
+    p->text = p->plan.json && strcmp(p->plan.json, "-") == 0 ? stderr : stdout;
+    p->record.plan = &p->plan;
+    p->record.source = p->plan.groom ? p->plan.groom : p->plan.style;
+    p->record.motion = p->motion.description;
+    if (!play_load_motion(p) || !play_count_frames(p)) {
+        return false;
+    }
+    if (p->plan.out && !files_make_folder(p->plan.out, text, sizeof text)) {
+        awtctl_failed("%s", text);
+        return false;
+    }
+    p->client = awtctl_connect(&p->plan.connection, PLAY_TIMEOUT_MS);
+    return p->client && (!p->plan.groom || play_upload(p)) && play_create(p);
+}
+
+/* ---- frames
+ * ------------------------------------------------------------------------------------------------------------- */
+
+static void play_wait_ms(uint32_t ms)
+{
+    ms = ms < PLAY_BUSY_LEAST_MS ? PLAY_BUSY_LEAST_MS : ms > PLAY_BUSY_MOST_MS ? PLAY_BUSY_MOST_MS : ms;
+    struct timespec wait = {ms / 1000, (long)(ms % 1000) * 1000000};
+    nanosleep(&wait, NULL);
+}
+
+/* The hair at that time. A daemon that has too much to do is asked again. */
+static bool play_query(play *p, int64_t time_us, proto_message *answer, awtclient_error *error)
+{
+    for (int tries = 0; tries < PLAY_BUSY_TRIES; tries++) {
+        proto_message query = {.type = PROTO_QUERY};
+        query.as.query.forest = p->record.forest.forest;
+        query.as.query.time_us = time_us;
+        query.as.query.kind = p->plan.kind;
+        if (awtclient_call(p->client, &query, answer, error)) {
+            return true;
+        }
+        if (error->code != PROTO_ERROR_BUSY) {
+            return false;
+        }
+        play_wait_ms(error->retry_after_ms);
+    }
+    return false;
+}
+
+static bool play_ask_frame(play *p, size_t frame, proto_message *answer)
+{
+    awtclient_error error;
+    int64_t time_us = play_time_us(p, frame);
+    motion_sample at = motion_at(&p->motion, time_us);
+    proto_message move = {.type = PROTO_MOTION};
+    move.as.motion.forest = p->record.forest.forest;
+    move.as.motion.epoch = 1;
+    move.as.motion.sequence = (uint32_t)frame + 1;
+    move.as.motion.time_us = time_us;
+    move.as.motion.head = pose_to_wire(&at.head);
+    move.as.motion.body = pose_to_wire(&at.body);
+    p->record.frames[frame].head = at.head;
+    p->record.frames[frame].body = at.body;
+    if (!awtclient_send(p->client, &move, &error) || !play_query(p, time_us, answer, &error)) {
+        progress_hide(&p->progress);
+        awtctl_failed("frame %zu: %s", frame + 1, error.text);
+        return false;
+    }
+    if (answer->as.frame.time_us != time_us) {
+        progress_hide(&p->progress);
+        awtctl_failed("frame %zu: the daemon answered for %lld us where %lld us were asked for", frame + 1,
+                      (long long)answer->as.frame.time_us, (long long)time_us);
+        return false;
+    }
+    return true;
+}
+
+static void play_keep_figures(play_frame *f, const struct proto_frame *from)
+{
+    f->time_us = from->time_us;
+    f->active_nodes = from->active_nodes;
+    f->splits = from->splits;
+    f->merges = from->merges;
+    f->steps = from->steps;
+    f->queue_us = from->queue_us;
+    f->step_us = from->step_us;
+    f->encode_us = from->encode_us;
+    f->unreached_contacts = from->unreached_contacts;
+    f->clamped_points = from->clamped_points;
+    f->clamped_speeds = from->clamped_speeds;
+    f->link_error = from->link_error;
+    f->kinetic_energy_j = from->kinetic_energy_j;
+    f->bytes = from->glb.length;
+}
+
+/* Writes and measures what is to be. */
+static bool play_keep_geometry(play *p, size_t frame, const proto_blob *glb)
+{
+    char path[4200], text[4300];
+    awt_error error;
+    bool write = p->plan.out && (frame + 1) % p->every == 0;
+    if (p->plan.kind == 0 && (write || p->plan.check || frame == 0) &&
+        strandcheck_add(&p->record.strands, glb->bytes, glb->length, &error) != AWT_OK) {
+        progress_hide(&p->progress);
+        awtctl_failed("frame %zu: %s", frame + 1, error.text);
+        return false;
+    }
+    if (!write) {
+        return true;
+    }
+    play_frame_path(&p->record, frame, path, sizeof path);
+    p->record.frames[frame].written = files_write(path, glb->bytes, glb->length, text, sizeof text);
+    if (!p->record.frames[frame].written) {
+        progress_hide(&p->progress);
+        awtctl_failed("%s", text);
+    }
+    return p->record.frames[frame].written;
+}
+
+/* The frame's way is over: its line can be printed. */
+static void play_finish_frame(play *p, size_t frame, uint32_t write_us)
+{
+    p->record.frames[frame].write_us = write_us;
+    if (!p->plan.quiet && p->text == stdout) {
+        progress_hide(&p->progress);
+        play_record_print_frame(&p->record, frame, p->text);
+    }
+}
+
+static void play_show_progress(play *p, size_t frame)
+{
+    char text[96];
+    const play_frame *f = &p->record.frames[frame];
+    double taken_s = (double)(socket_now_us() - p->progress.began_us) * 1e-6;
+    snprintf(text, sizeof text, "frame %zu/%zu, %.2f s, %u active, %.1f fps", frame + 1, p->frame_count,
+             (double)f->time_us * 1e-6, f->active_nodes, taken_s > 0 ? (double)(frame + 1) / taken_s : 0.0);
+    progress_show(&p->progress, (double)(frame + 1) / (double)p->frame_count, text);
+}
+
+static bool play_last_write(play *p, uint32_t *write_us)
+{
+    awtclient_error error;
+    proto_message request = {.type = PROTO_STATS}, answer;
+    if (!awtclient_call(p->client, &request, &answer, &error)) {
+        awtctl_failed("%s", error.text);
+        return false;
+    }
+    *write_us = answer.as.stats_reply.last_write_us;
+    return true;
+}
+
+static bool play_frames(play *p)
+{
+    uint32_t write_us;
+    p->progress = progress_begin(stderr, "play", p->plan.quiet);
+    for (size_t i = 0; i < p->frame_count; i++) {
+        proto_message answer;
+        if (!play_ask_frame(p, i, &answer)) {
+            return false;
+        }
+        const struct proto_frame *frame = &answer.as.frame;
+        play_keep_figures(&p->record.frames[i], frame);
+        p->record.frame_count = i + 1;
+        if (i > 0) {
+            play_finish_frame(p, i - 1, frame->last_write_us);
+        }
+        if (!play_keep_geometry(p, i, &frame->glb)) {
+            return false;
+        }
+        play_show_progress(p, i);
+        if (play_interrupted) {
+            progress_hide(&p->progress);
+            awtctl_failed("interrupted after frame %zu of %zu", i + 1, p->frame_count);
+            return false;
+        }
+    }
+    progress_hide(&p->progress);
+    if (!play_last_write(p, &write_us)) {
+        return false;
+    }
+    play_finish_frame(p, p->frame_count - 1, write_us);
+    return true;
+}
+
+/* ---- the whole
+ * ------------------------------------------------------------------------------------------------------------ */
+
+/* A forest outlives its connection, so it is ended whatever happened; after a failure without waiting for the answer.
+ */
+static void play_end_forest(play *p, bool wait)
+{
+    proto_message request = {.type = PROTO_DESTROY}, answer;
+    request.as.destroy.forest = p->record.forest.forest;
+    if (wait) {
+        awtclient_call(p->client, &request, &answer, NULL);
+    } else {
+        awtclient_send(p->client, &request, NULL);
+    }
+    p->created = false;
+}
+
+static void play_fini(play *p)
+{
+    if (p->created) {
+        play_end_forest(p, false);
+    }
+    awtclient_close(p->client);
+    strandcheck_fini(&p->record.strands);
+    free(p->record.frames);
+    motion_fini(&p->motion);
+}
+
+awtctl_exit awtctl_play(int argc, char *const *argv)
+{
+    play p = {0};
+    awtctl_exit code;
+    if (!play_plan_read(argc, argv, &p.plan, &code)) {
+        return code;
+    }
+    code = AWTCTL_FAILED;
+    play_catch_signals();
+    if (!play_prepare(&p)) {
+        goto fail;
+    }
+    play_record_print_forest(&p.record, p.text);
+    fflush(p.text);
+    if (!play_frames(&p)) {
+        goto fail;
+    }
+    play_end_forest(&p, true);
+    play_record_print_summary(&p.record, p.text);
+    if (p.plan.json && !awtctl_write_json(p.plan.json, play_record_json, &p.record)) {
+        goto fail;
+    }
+    code = fflush(p.text) == 0 ? AWTCTL_FINE : awtctl_failed("standard output takes no more");
+fail:
+    play_fini(&p);
+    return code;
+}

@@ -1,0 +1,70 @@
+/* awtctl_play.h: the parts of awtctl play: what is asked for (plan), what came of it (record). Private to awtctl*.c. */
+#ifndef CLIENTS_AWTCTL_PLAY_H
+#define CLIENTS_AWTCTL_PLAY_H
+
+#include "awtctl.h"
+#include "motion/motion.h"
+#include "strandcheck.h"
+
+/* ---- the plan: checked options ------------------------------------------------------------------------------- */
+
+enum { PLAY_MAX_PARAMS = 64 };
+
+typedef struct play_plan {
+    awtctl_connection connection;
+    const char *style, *groom; /* one of them is NULL */
+    double scale;              /* of the groom; 0: guess */
+    awt_up_axis up;
+    double head[4]; /* centre and radius, file units; radius 0: guess */
+    long long strands, seed;
+    const char *motion; /* a built-in clip's name or a file */
+    motion_options motion_options;
+    double fps;
+    long long frames, every; /* 0: the whole clip; 0: so that about 20 files come out */
+    uint8_t kind;            /* as in QUERY */
+    const char *out;         /* folder; NULL: no files */
+    const char *json;        /* file, "-" or NULL */
+    bool quiet, check;
+    size_t param_count;
+    struct {
+        char name[33];
+        float value;
+    } params[PLAY_MAX_PARAMS];
+} play_plan;
+
+/* Fills `plan`, whose texts point into argv. False: the program ends here with *code. */
+bool play_plan_read(int argc, char *const *argv, play_plan *plan, awtctl_exit *code);
+
+/* ---- the record: every frame's figures -------------------------------------------------------------------------- */
+
+typedef struct play_frame {
+    int64_t time_us;
+    uint32_t active_nodes, splits, merges, steps;
+    uint32_t queue_us, step_us, encode_us, write_us; /* write_us: known one frame later */
+    uint32_t unreached_contacts, clamped_points, clamped_speeds;
+    float link_error, kinetic_energy_j;
+    size_t bytes;
+    bool written; /* to a file */
+    awt_pose head, body;
+} play_frame;
+
+typedef struct play_record {
+    const play_plan *plan;
+    const char *source;               /* style or file */
+    const char *motion;               /* what was taken of it */
+    struct proto_create_reply forest; /* what the daemon said of it */
+    size_t frame_count;               /* frames that have come */
+    play_frame *frames;               /* heap, as many as will come */
+    strandcheck strands;
+} play_record;
+
+/* Path of a frame's file. */
+void play_frame_path(const play_record *record, size_t frame, char *path, size_t size);
+
+void play_record_print_forest(const play_record *record, FILE *file);
+void play_record_print_frame(const play_record *record, size_t frame, FILE *file);
+void play_record_print_summary(const play_record *record, FILE *file);
+/* For awtctl_write_json; `context` is the record. */
+void play_record_json(jsonout *json, const void *context);
+
+#endif
