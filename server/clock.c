@@ -1,0 +1,17 @@
+/* clock.c: see clock.h. */
+#include "clock.h"
+
+#include <time.h>
+
+int64_t clock_monotonic_us(void)
+{
+    struct timespec now = {0};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+uint32_t clock_between_us(int64_t from_us, int64_t to_us)
+{
+    int64_t between = to_us - from_us;
+    return between <= 0 ? 0 : between >= (int64_t)UINT32_MAX ? UINT32_MAX : (uint32_t)between;
+}

@@ -1,0 +1,11 @@
+/* completions.h: what workers have done, brought to those who asked. */
+#ifndef COMPLETIONS_H
+#define COMPLETIONS_H
+
+#include "service.h"
+
+/* Takes every finished job: answers CREATE and QUERY, publishes frames to subscribers, reports refused motions, frees
+ * doomed forests, has the next jobs run. On the I/O thread. True if there were any. */
+bool completions_take(service *shared);
+
+#endif

@@ -1,0 +1,80 @@
+/* daemon.c: see daemon.h. */
+#include "daemon.h"
+#include "clock.h"
+#include "loop.h"
+#include "net.h"
+#include "token.h"
+#include "base/version.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static bool open_token(const config *asked, service_options *options, char *error, size_t error_size)
+{
+    options->auth_required = !asked->no_auth;
+    if (asked->no_auth) {
+        return true;
+    }
+    return (asked->own_token_file || token_make_directory(asked->state_directory, error, error_size)) &&
+           token_open(asked->token_file, options->token, error, error_size);
+}
+
+/* Scripts wait for this line: it says that connections are taken, and on which port. */
+static void announce(const config *asked, const char *bound)
+{
+    printf("listening on %s\n", bound);
+    fflush(stdout);
+    log_write(LOG_INFO, "started", "version=%s listen=%s workers=%u token=%s", AWTD_VERSION, bound, asked->workers,
+              asked->no_auth ? "none" : asked->token_file);
+}
+
+static bool serve(const config *asked, const service_options *options, wake *bell, int listener, const char *bound,
+                  char *error, size_t error_size)
+{
+    service shared = {0};
+    loop turns;
+    if (!service_init(&shared, options)) {
+        snprintf(error, error_size, "not enough memory or threads for %u workers; give --workers N", asked->workers);
+        close(listener);
+        return false;
+    }
+    if (!loop_init(&turns, &shared, bell, listener, asked->max_connections)) {
+        snprintf(error, error_size, "not enough memory for %lu connections", (unsigned long)asked->max_connections);
+        service_fini(&shared);
+        return false;
+    }
+    announce(asked, bound);
+    loop_run(&turns);
+    loop_fini(&turns);
+    service_fini(&shared); /* may wait for a groom that is being built */
+    log_write(LOG_INFO, "stopped", "listen=%s", bound);
+    return true;
+}
+
+bool daemon_run(const config *asked, char *error, size_t error_size)
+{
+    static wake bell; /* outlives the call: a signal may come at any time */
+    service_options options = {.workers = asked->workers,
+                               .max_forests = asked->max_forests,
+                               .max_sessions = asked->max_connections + LIMIT_CONNECTIONS_REFUSED,
+                               .clock_us = clock_monotonic_us,
+                               .wake = wake_ring,
+                               .wake_context = &bell};
+    char bound[NET_ADDRESS];
+    bool served = false;
+    log_set_level(asked->level);
+    if (!open_token(asked, &options, error, error_size)) {
+        return false;
+    }
+    if (!wake_init(&bell)) {
+        snprintf(error, error_size, "no descriptors are left for this process");
+        return false;
+    }
+    int listener = net_listen(asked->host, asked->port, asked->no_auth, bound, error, error_size);
+    if (listener >= 0) {
+        wake_on_signals(&bell);
+        served = serve(asked, &options, &bell, listener, bound, error, error_size);
+    }
+    return served;
+}

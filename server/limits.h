@@ -1,0 +1,56 @@
+/* limits.h: every queue, buffer and count of the daemon that a peer can fill, and every time it can make us wait. The
+ * sizes that the library itself bounds are in awt.h, those of the protocol in proto.h. */
+#ifndef LIMITS_H
+#define LIMITS_H
+
+#include <stdint.h>
+
+enum {
+    /* the daemon as a whole; the defaults of the options and the greatest values they take */
+    LIMIT_CONNECTIONS = 256,
+    LIMIT_CONNECTIONS_GREATEST = 4096,
+    LIMIT_CONNECTIONS_REFUSED = 16, /* beyond the greatest number: those who are being told that there are too many */
+    LIMIT_FORESTS = 256,
+    LIMIT_FORESTS_GREATEST = 65536,
+    LIMIT_WORKERS_GREATEST = 256,
+    LIMIT_BACKLOG = 128, /* connections that wait for accept */
+    LIMIT_PATH = 1024,   /* bytes of the state directory's and the token file's path */
+
+    /* one session */
+    LIMIT_SESSION_FORESTS = 256, /* forests open on it */
+    LIMIT_SESSION_UPLOADS = 4,   /* uploads begun or complete */
+    LIMIT_SESSION_SUBSCRIPTIONS = 16,
+    LIMIT_SESSION_PENDING = 16, /* requests that wait for a worker; beyond, its next message waits unread */
+
+    /* one forest: inputs that wait for their turn */
+    LIMIT_FOREST_INPUTS = 256, /* motions and changes of parameters */
+    LIMIT_FOREST_QUERIES = 64,
+
+    /* one connection's buffers */
+    LIMIT_INPUT_OPEN = 16 * 1024,  /* bytes of buffer once the client is in */
+    LIMIT_INPUT_KEPT = 64 * 1024,  /* bytes of buffer kept between messages; more is given back */
+    LIMIT_OUTPUT_SEGMENTS = 64,    /* unsent messages; beyond, nothing more is read from the connection */
+    LIMIT_OUTPUT_BYTES = 16 << 20, /* unsent bytes; likewise */
+    LIMIT_OUTPUT_GATHER = 8,       /* messages handed to the socket at once */
+    LIMIT_LOG_LINE = 1024,         /* bytes; the rest is cut */
+
+    /* one turn of the loop, so that no connection keeps the others waiting */
+    LIMIT_TURN_ACCEPTS = 16,
+    LIMIT_TURN_READ = 256 * 1024,   /* bytes from one connection */
+    LIMIT_TURN_WRITE = 1024 * 1024, /* bytes to one connection */
+    LIMIT_TURN_MESSAGES = 64        /* of one connection */
+};
+
+/* Bytes. */
+#define LIMIT_UPLOAD_BYTES (UINT64_C(256) << 20)  /* one strand file */
+#define LIMIT_UPLOADS_BYTES (UINT64_C(512) << 20) /* all uploads of all connections */
+#define LIMIT_HAIR_BYTES (UINT64_C(4) << 30)      /* forests and grooms; beyond, CREATE is refused */
+
+/* Times, microseconds. */
+#define LIMIT_HANDSHAKE_US INT64_C(10000000)   /* from accept until the client is in */
+#define LIMIT_WRITE_STALL_US INT64_C(30000000) /* a peer that takes nothing for so long is let go */
+#define LIMIT_LINGER_US INT64_C(1000000)       /* after the last byte out, for the peer to close first */
+#define LIMIT_ACCEPT_PAUSE_US INT64_C(100000)  /* no accept for so long when descriptors have run out */
+#define LIMIT_STOP_FLUSH_US INT64_C(2000000)   /* after SIGTERM, for what is still unsent */
+
+#endif

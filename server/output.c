@@ -1,0 +1,160 @@
+/* output.c: see output.h. */
+#include "output.h"
+#include "base/assert.h"
+#include "clock.h"
+#include "limits.h"
+
+#include <stdlib.h>
+
+enum { OUTPUT_FRAME_HEAD = 256 }; /* more than the FRAME's fields before its GLB */
+
+struct output_segment {
+    output_segment *next;
+    published *frame; /* NULL: a message, whole in `bytes` */
+    uint64_t request;
+    uint32_t skipped;
+    size_t size; /* of `bytes`; of a frame that has not begun: 0 */
+    unsigned char bytes[];
+};
+
+static size_t segment_blob(const output_segment *segment)
+{
+    return segment->frame ? segment->frame->glb.size : 0;
+}
+
+static void append(output *out, output_segment *segment)
+{
+    *(out->last ? &out->last->next : &out->first) = segment;
+    out->last = segment;
+    out->segments++;
+    out->bytes += segment->size + segment_blob(segment);
+}
+
+static void remove_first(output *out)
+{
+    output_segment *segment = out->first;
+    out->bytes -= segment->size + segment_blob(segment);
+    out->segments--;
+    out->sent = 0;
+    out->first = segment->next;
+    out->last = out->first ? out->last : NULL;
+    published_release(segment->frame);
+    free(segment);
+}
+
+void output_discard(output *out)
+{
+    while (out->first) {
+        remove_first(out);
+    }
+}
+
+void output_fini(output *out)
+{
+    output_discard(out);
+    *out = (output){0};
+}
+
+bool output_add_message(output *out, const proto_message *message)
+{
+    size_t size = proto_encoded_size(message);
+    ASSERT(size > 0); /* the daemon's own texts and lists keep their limits */
+    output_segment *segment = malloc(sizeof *segment + size);
+    if (!segment) {
+        return false;
+    }
+    *segment = (output_segment){.size = size};
+    size_t written = proto_encode(message, segment->bytes, size);
+    ASSERT(written == size);
+    append(out, segment);
+    return true;
+}
+
+bool output_add_frame(output *out, published *frame, uint64_t request, uint32_t skipped)
+{
+    output_segment *segment = malloc(sizeof *segment + OUTPUT_FRAME_HEAD);
+    if (!segment) {
+        published_release(frame);
+        return false;
+    }
+    *segment = (output_segment){.frame = frame, .request = request, .skipped = skipped};
+    append(out, segment);
+    return true;
+}
+
+/* The fields of the frame that goes out now. */
+static void begin_frame(output *out, output_segment *segment, int64_t now_us)
+{
+    proto_message message = {.type = PROTO_FRAME, .request = segment->request};
+    message.as.frame = segment->frame->frame;
+    message.as.frame.age_us = clock_between_us(segment->frame->stepped_us, now_us);
+    message.as.frame.skipped = segment->skipped;
+    message.as.frame.last_write_us = out->last_write_us;
+    segment->size = proto_encode_head(&message, segment->bytes, OUTPUT_FRAME_HEAD);
+    ASSERT(segment->size > 0);
+    out->bytes += segment->size;
+}
+
+/* Adds what is left of the bytes behind `skip`, and lessens `skip` by what it passed. */
+static void gather(struct iovec *pieces, size_t *count, unsigned char *bytes, size_t size, size_t *skip)
+{
+    if (*skip >= size) {
+        *skip -= size;
+        return;
+    }
+    pieces[*count] = (struct iovec){.iov_base = bytes + *skip, .iov_len = size - *skip};
+    *count += 1;
+    *skip = 0;
+}
+
+/* A frame goes out alone, so that its own times are true. */
+static size_t gather_segments(output *out, struct iovec pieces[LIMIT_OUTPUT_GATHER], int64_t now_us)
+{
+    size_t count = 0, skip = out->sent;
+    if (out->first->frame) {
+        if (out->first->size == 0) {
+            begin_frame(out, out->first, now_us);
+        }
+        gather(pieces, &count, out->first->bytes, out->first->size, &skip);
+        gather(pieces, &count, out->first->frame->glb.bytes, out->first->frame->glb.size, &skip);
+        return count;
+    }
+    for (output_segment *s = out->first; s && !s->frame && count < LIMIT_OUTPUT_GATHER; s = s->next) {
+        gather(pieces, &count, s->bytes, s->size, &skip);
+    }
+    return count;
+}
+
+static void take_sent(output *out, size_t sent, int64_t now_us)
+{
+    out->bytes_sent += sent;
+    out->sent += sent;
+    while (out->first && out->first->size > 0 && out->sent >= out->first->size + segment_blob(out->first)) {
+        size_t rest = out->sent - out->first->size - segment_blob(out->first);
+        if (out->first->frame) {
+            uint32_t took_us = clock_between_us(out->begun_us, now_us);
+            out->last_write_us = took_us ? took_us : 1; /* 0 says that there was none */
+            out->frames_sent++;
+        }
+        remove_first(out);
+        out->sent = rest;
+    }
+}
+
+net_result output_write(output *out, int fd, size_t most, int64_t (*clock_us)(void))
+{
+    for (size_t written = 0; out->first && written < most;) {
+        struct iovec pieces[LIMIT_OUTPUT_GATHER];
+        int64_t now_us = clock_us();
+        size_t count = gather_segments(out, pieces, now_us);
+        out->begun_us = out->sent == 0 ? now_us : out->begun_us;
+        size_t sent = 0;
+        net_result result = net_send(fd, pieces, count, &sent);
+        if (result != NET_DONE) {
+            return result;
+        }
+        take_sent(out, sent, clock_us());
+        written += sent;
+    }
+    return NET_DONE;
+}

@@ -1,0 +1,105 @@
+/* recipe.c: see recipe.h. */
+#include "recipe.h"
+#include "convert.h"
+#include "base/error.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define STIFFNESS "style_omega"
+
+static awt_status take_source(const struct proto_create *message, upload *file, recipe *r, awt_error *error)
+{
+    if (message->source == RECIPE_FROM_STYLE) {
+        char name[RECIPE_NAME];
+        proto_str_copy(message->style, name, sizeof name);
+        r->style = awt_style_find(name);
+        if (!r->style) {
+            return error_set(error, AWT_NO_STYLE, NULL);
+        }
+        r->seed = message->seed;
+        r->strands = message->strands ? message->strands : AWT_DEFAULT_STRANDS;
+        r->groom = awt_groom_def_of_style(r->style);
+        r->params = r->style->params;
+        r->placement = (awt_placement){
+            .scale = 1, .up = AWT_UP_Y, .head_radius = AWT_HEAD_RADIUS_M, .head_radius_m = AWT_HEAD_RADIUS_M};
+        return AWT_OK;
+    }
+    if (message->up > AWT_UP_Z) {
+        return error_set(error, AWT_BAD_VALUE, "up is %u; 0 guesses, 1 is Y, 2 is Z", (unsigned)message->up);
+    }
+    r->file = upload_hold(file);
+    r->groom = awt_groom_def_default();
+    r->params = awt_params_default();
+    r->placement = (awt_placement){.scale = message->scale,
+                                   .up = (awt_up_axis)message->up,
+                                   .head_centre = {message->head_x, message->head_y, message->head_z},
+                                   .head_radius = message->head_radius};
+    return AWT_OK;
+}
+
+/* A field that is 0 leaves what the style or the default says. */
+static void take_groom(const struct proto_create *message, awt_groom_def *groom)
+{
+    groom->levels = message->levels ? message->levels : groom->levels;
+    groom->sections = message->sections ? message->sections : groom->sections;
+    groom->finest_wisps = message->finest_wisps ? message->finest_wisps : groom->finest_wisps;
+    groom->top_wisps = message->top_wisps ? message->top_wisps : groom->top_wisps;
+    groom->points_per_strand = message->points_per_strand ? message->points_per_strand : groom->points_per_strand;
+}
+
+static awt_status take_colliders(const struct proto_create *message, recipe *r, awt_error *error)
+{
+    r->own_colliders = message->own_colliders != 0;
+    if (!r->own_colliders) {
+        return AWT_OK;
+    }
+    r->collider_count = message->colliders.count;
+    for (uint32_t i = 0; i < r->collider_count; i++) {
+        awt_status status = convert_collider(&message->colliders.items[i], &r->colliders[i], error);
+        if (status != AWT_OK) {
+            return status;
+        }
+    }
+    return AWT_OK;
+}
+
+awt_status recipe_create(const struct proto_create *message, upload *file, recipe **out, awt_error *error)
+{
+    *out = NULL;
+    recipe *r = calloc(1, sizeof *r);
+    if (!r) {
+        return error_set(error, AWT_NO_MEMORY, NULL);
+    }
+    awt_status status = take_source(message, file, r, error);
+    if (status == AWT_OK) {
+        status = convert_params(message->params.items, message->params.count, &r->params, error);
+    }
+    for (uint16_t i = 0; i < message->params.count; i++) {
+        proto_str name = message->params.items[i].name;
+        r->own_stiffness =
+            r->own_stiffness || (name.length == sizeof STIFFNESS - 1 && memcmp(name.text, STIFFNESS, name.length) == 0);
+    }
+    if (status == AWT_OK) {
+        status = take_colliders(message, r, error);
+    }
+    if (status != AWT_OK) {
+        recipe_destroy(r);
+        return status;
+    }
+    take_groom(message, &r->groom);
+    proto_str_copy(message->name.length || !r->style ? message->name : proto_str_of(r->style->name), r->name,
+                   sizeof r->name);
+    r->start = (awt_motion){
+        .time_us = message->time_us, .head = convert_pose(&message->head), .body = convert_pose(&message->body)};
+    *out = r;
+    return AWT_OK;
+}
+
+void recipe_destroy(recipe *made)
+{
+    if (made) {
+        upload_release(made->file);
+        free(made);
+    }
+}

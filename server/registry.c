@@ -1,0 +1,184 @@
+/* registry.c: see registry.h. */
+#include "registry.h"
+#include "base/assert.h"
+#include "base/error.h"
+#include "limits.h"
+#include "random.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool registry_init(registry *reg, uint32_t greatest, worker_pool *pool)
+{
+    *reg = (registry){.greatest = greatest, .pool = pool};
+    return handle_table_init(&reg->handles, greatest);
+}
+
+static void resident_free(registry *reg, resident *r)
+{
+    ASSERT(!r->subscriptions);
+    *(r->previous ? &r->previous->next : &reg->first) = r->next;
+    *(r->next ? &r->next->previous : &reg->last) = r->previous;
+    reg->alive--;
+    forest_inputs_free(r->waiting);
+    published_release(r->latest);
+    forest_work_fini(&r->work);
+    free(r);
+}
+
+void registry_fini(registry *reg)
+{
+    while (reg->first) {
+        resident_free(reg, reg->first);
+    }
+    handle_table_fini(&reg->handles);
+    *reg = (registry){0};
+}
+
+/* A resident at the end of the list, with handle and tokens. */
+static resident *resident_create(registry *reg)
+{
+    resident *r = calloc(1, sizeof *r);
+    if (!r) {
+        return NULL;
+    }
+    r->waiting_end = &r->waiting;
+    r->handle = random_fill(r->drive_token, sizeof r->drive_token) && random_fill(r->view_token, sizeof r->view_token)
+                    ? handle_add(&reg->handles, r)
+                    : 0;
+    if (r->handle == 0) {
+        free(r);
+        return NULL;
+    }
+    r->previous = reg->last;
+    *(reg->last ? &reg->last->next : &reg->first) = r;
+    reg->last = r;
+    reg->alive++;
+    return r;
+}
+
+static void submit(registry *reg, resident *r)
+{
+    r->busy = true;
+    r->work.job.run = forest_work_run;
+    r->work.handle = r->handle;
+    r->work.sequence = r->sequence + 1;
+    worker_pool_submit(reg->pool, &r->work.job);
+}
+
+awt_status registry_create(registry *reg, recipe *making, origin from, int64_t now_us, awt_error *error)
+{
+    awt_status status = AWT_OK;
+    if (reg->alive >= reg->greatest) {
+        status = error_set(error, AWT_LIMIT, "%lu forests live here, and that is the limit: DESTROY one first",
+                           (unsigned long)reg->alive);
+    } else if (registry_bytes(reg) >= LIMIT_HAIR_BYTES) {
+        status = error_set(error, AWT_LIMIT, "the forests here fill the memory set aside for them: DESTROY one first");
+    }
+    resident *r = status == AWT_OK ? resident_create(reg) : NULL;
+    if (!r) {
+        recipe_destroy(making);
+        return status == AWT_OK ? error_set(error, AWT_NO_MEMORY, NULL) : status;
+    }
+    memcpy(r->name, making->name, sizeof r->name);
+    r->creator = from;
+    r->params = making->params;
+    r->motion_us = making->start.time_us;
+    r->work.making = making;
+    r->work.submitted_us = now_us;
+    submit(reg, r);
+    return AWT_OK;
+}
+
+resident *registry_find(const registry *reg, uint64_t handle)
+{
+    resident *r = handle_find(&reg->handles, handle);
+    return r && r->ready ? r : NULL;
+}
+
+forest_input *registry_destroy(registry *reg, resident *r)
+{
+    ASSERT(!r->doomed && !r->subscriptions);
+    handle_remove(&reg->handles, r->handle);
+    r->handle = 0;
+    r->doomed = true;
+    forest_input *waiting = r->waiting;
+    r->waiting = NULL;
+    r->waiting_end = &r->waiting;
+    r->waiting_inputs = r->waiting_queries = 0;
+    if (!r->busy) {
+        resident_free(reg, r);
+    }
+    return waiting;
+}
+
+/* Everything up to the first query becomes a job, if no worker has the forest already. */
+static void start_next(registry *reg, resident *r)
+{
+    if (r->busy || r->waiting_queries == 0) {
+        return;
+    }
+    r->work.inputs = r->waiting;
+    forest_input *query = r->waiting;
+    for (; query->kind != FOREST_QUERY; query = query->next) {
+        r->waiting_inputs--;
+    }
+    r->waiting_queries--;
+    r->waiting = query->next;
+    r->waiting_end = r->waiting ? r->waiting_end : &r->waiting;
+    query->next = NULL;
+    r->work.submitted_us = query->arrived_us;
+    submit(reg, r);
+}
+
+bool registry_push(registry *reg, resident *r, forest_input *input)
+{
+    bool query = input->kind == FOREST_QUERY;
+    if (query ? r->waiting_queries >= LIMIT_FOREST_QUERIES : r->waiting_inputs >= LIMIT_FOREST_INPUTS) {
+        return false;
+    }
+    *(query ? &r->waiting_queries : &r->waiting_inputs) += 1;
+    input->next = NULL;
+    *r->waiting_end = input;
+    r->waiting_end = &input->next;
+    start_next(reg, r);
+    return true;
+}
+
+resident *registry_take_back(job *done)
+{
+    size_t offset = offsetof(resident, work) + offsetof(forest_work, job);
+    resident *r = (resident *)(void *)((unsigned char *)done - offset);
+    ASSERT(r->busy);
+    r->bytes = forest_work_bytes(&r->work);
+    return r;
+}
+
+void registry_continue(registry *reg, resident *r)
+{
+    r->busy = false;
+    if (r->doomed) {
+        resident_free(reg, r);
+    } else {
+        start_next(reg, r);
+    }
+}
+
+uint64_t registry_bytes(const registry *reg)
+{
+    uint64_t bytes = 0;
+    for (const resident *r = reg->first; r; r = r->next) {
+        bytes += r->bytes;
+    }
+    return bytes;
+}
+
+uint32_t registry_ready_count(const registry *reg)
+{
+    uint32_t count = 0;
+    for (const resident *r = reg->first; r; r = r->next) {
+        count += r->ready && !r->doomed;
+    }
+    return count;
+}

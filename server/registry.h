@@ -1,0 +1,84 @@
+/* registry.h: the forests that live in the daemon, and the order in which they are worked on.
+ *
+ * A resident belongs to the I/O thread, except its `work`, which belongs to a worker while `busy`. Messages that act on
+ * it wait in `waiting`, in order, whoever sent them; when it is idle, everything up to and including the first QUERY
+ * becomes one job. So a QUERY sees exactly the motions and parameters that came before it, and the result does not
+ * depend on how many workers there are. */
+#ifndef REGISTRY_H
+#define REGISTRY_H
+
+#include "forest_work.h"
+#include "handles.h"
+#include "worker.h"
+
+struct subscription;
+
+enum { REGISTRY_TOKEN_SIZE = 16 };
+
+typedef struct resident {
+    uint64_t handle;                  /* 0 once it is doomed */
+    struct resident *next, *previous; /* in order of creation */
+    uint8_t drive_token[REGISTRY_TOKEN_SIZE], view_token[REGISTRY_TOKEN_SIZE];
+    char name[RECIPE_NAME];
+    origin creator; /* whom CREATE is answered to */
+    bool ready;     /* made; before, nobody but CREATE's answer may touch it */
+    bool busy;      /* a worker has `work` */
+    bool doomed;    /* ended; freed when the worker hands `work` back */
+
+    forest_input *waiting, **waiting_end;
+    uint32_t waiting_inputs, waiting_queries;
+
+    /* what MOTION and SET_PARAMS are checked against: as the forest will be once `waiting` is done */
+    bool moved;
+    uint32_t motion_epoch, motion_sequence;
+    int64_t motion_us;
+    awt_params params;
+
+    uint64_t sequence; /* of the latest frame */
+    published *latest; /* ribbon, full; a reference */
+    struct subscription *subscriptions;
+    uint32_t subscription_count;
+    awt_groom_info info;
+    uint64_t bytes; /* that it holds, when it was last idle */
+
+    forest_work work;
+} resident;
+
+typedef struct registry {
+    handle_table handles;
+    resident *first, *last; /* in order of creation; doomed ones too, until they are freed */
+    uint32_t alive;         /* doomed ones too: they hold memory */
+    uint32_t greatest;
+    worker_pool *pool;
+} registry;
+
+/* Room for `greatest` forests. The pool must outlive every call but registry_fini. False: no memory. */
+bool registry_init(registry *reg, uint32_t greatest, worker_pool *pool);
+/* Frees every resident. After the pool's threads have ended. Accepts a zeroed one. */
+void registry_fini(registry *reg);
+
+/* Takes `making` and has a worker make the forest of it. The result arrives with the job. AWT_LIMIT (too many
+ * forests), AWT_NO_MEMORY (or no random bytes); `making` is freed then. */
+awt_status registry_create(registry *reg, recipe *making, origin from, int64_t now_us, awt_error *error);
+
+/* NULL: no such forest, or it is not made yet. */
+resident *registry_find(const registry *reg, uint64_t handle);
+
+/* Ends a resident: its handle is stale at once; it is freed now, or when the worker hands it back. Its subscriptions
+ * must have ended. Inputs that still wait are given to the caller, who answers and frees them. */
+forest_input *registry_destroy(registry *reg, resident *r);
+
+/* Queues an input (taken) behind those that wait. False: too many wait; the input is the caller's again. */
+bool registry_push(registry *reg, resident *r, forest_input *input);
+
+/* The resident whose job this is, for its results; it stays busy until registry_continue. */
+resident *registry_take_back(job *done);
+/* After the results are taken: frees the resident if it is doomed, else has its next job run. */
+void registry_continue(registry *reg, resident *r);
+
+/* Bytes held by all hair. */
+uint64_t registry_bytes(const registry *reg);
+/* Forests that are made and not ended. */
+uint32_t registry_ready_count(const registry *reg);
+
+#endif

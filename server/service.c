@@ -1,0 +1,25 @@
+/* service.c: see service.h. */
+#include "service.h"
+#include "limits.h"
+
+bool service_init(service *s, const service_options *options)
+{
+    *s = (service){.options = *options};
+    s->uploads.greatest = LIMIT_UPLOADS_BYTES;
+    s->started_us = options->clock_us();
+    s->pool = worker_pool_create(options->workers, options->wake, options->wake_context);
+    if (s->pool && registry_init(&s->forests, options->max_forests, s->pool) &&
+        handle_table_init(&s->sessions, options->max_sessions)) {
+        return true;
+    }
+    service_fini(s);
+    return false;
+}
+
+void service_fini(service *s)
+{
+    worker_pool_destroy(s->pool); /* first: no worker may hold what is freed next */
+    registry_fini(&s->forests);
+    handle_table_fini(&s->sessions);
+    *s = (service){0};
+}

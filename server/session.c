@@ -1,0 +1,271 @@
+/* session.c: see session.h. */
+#include "session.h"
+#include "log.h"
+#include "status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool session_init(session *s, service *shared, const session_sink *sink, const char *peer)
+{
+    *s = (session){.shared = shared, .sink = *sink};
+    s->handle = handle_add(&shared->sessions, s);
+    if (s->handle == 0) {
+        *s = (session){0};
+        return false;
+    }
+    snprintf(s->peer, sizeof s->peer, "%s", peer);
+    shared->counters.sessions++;
+    return true;
+}
+
+/* Says which forests nobody is left to end but those who hold the token. */
+static void log_forests_left(const session *s)
+{
+    uint32_t driven = 0;
+    for (uint32_t i = 0; i < s->attachment_count; i++) {
+        driven += s->attachments[i].may_drive && registry_find(&s->shared->forests, s->attachments[i].forest);
+    }
+    if (driven > 0) {
+        log_write(LOG_INFO, "forests live on", "peer=%s forests=%lu", s->peer, (unsigned long)driven);
+    }
+}
+
+void session_fini(session *s)
+{
+    if (!s->shared) {
+        return;
+    }
+    log_forests_left(s);
+    for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
+        if (s->subscriptions[i].handle) {
+            subscription_end(&s->subscriptions[i]);
+        }
+    }
+    for (uint32_t i = 0; i < LIMIT_SESSION_UPLOADS; i++) {
+        upload_release(s->uploads[i]);
+    }
+    handle_remove(&s->shared->sessions, s->handle);
+    s->shared->counters.sessions--;
+    *s = (session){0};
+}
+
+session *session_find(const service *shared, origin from)
+{
+    return handle_find(&shared->sessions, from.session);
+}
+
+void session_send(session *s, const proto_message *message)
+{
+    if (s->state != SESSION_CLOSING) {
+        s->sink.message(s->sink.context, message);
+    }
+}
+
+static void send_error(session *s, uint16_t about, uint64_t request, int code, const char *text)
+{
+    char quoted[LOG_QUOTED];
+    log_write(LOG_DEBUG, "error sent", "peer=%s about=%s code=%d text=%s", s->peer,
+              about ? proto_type_name(about) : "connection", code, log_quote(text, strlen(text), quoted));
+    proto_message message = {.type = PROTO_ERROR, .request = request};
+    message.as.error.code = (uint16_t)code;
+    message.as.error.retry = proto_error_retry(code);
+    message.as.error.about = about;
+    message.as.error.text = proto_str_of(text);
+    s->shared->counters.errors_sent++;
+    session_send(s, &message);
+    if (proto_error_closes(code)) {
+        s->state = SESSION_CLOSING;
+    }
+}
+
+void session_error(session *s, uint16_t about, uint64_t request, int code, const char *format, ...)
+{
+    char text[240];
+    if (!format) {
+        send_error(s, about, request, code, proto_error_text(code));
+        return;
+    }
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    send_error(s, about, request, code, text);
+}
+
+void session_error_awt(session *s, uint16_t about, uint64_t request, const awt_error *error)
+{
+    send_error(s, about, request, status_wire_error(error->status), error->text);
+}
+
+void session_bye(session *s, const char *reason)
+{
+    proto_message message = {.type = PROTO_BYE};
+    message.as.bye.reason = proto_str_of(reason);
+    session_send(s, &message);
+    s->state = SESSION_CLOSING;
+}
+
+void session_frame(session *s, published *frame, uint64_t request)
+{
+    if (s->state != SESSION_CLOSING) {
+        s->sink.frame(s->sink.context, published_hold(frame), request, 0);
+    }
+}
+
+/* ---- forests of a session --------------------------------------------------------------------------------------- */
+
+static attachment *find_attachment(session *s, uint64_t forest)
+{
+    for (uint32_t i = 0; i < s->attachment_count; i++) {
+        if (s->attachments[i].forest == forest) {
+            return &s->attachments[i];
+        }
+    }
+    return NULL;
+}
+
+/* Forgets forests that have ended elsewhere. */
+static void drop_stale_attachments(session *s)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < s->attachment_count; i++) {
+        if (registry_find(&s->shared->forests, s->attachments[i].forest)) {
+            s->attachments[kept++] = s->attachments[i];
+        }
+    }
+    s->attachment_count = kept;
+}
+
+bool session_attach(session *s, uint64_t forest, bool may_drive)
+{
+    attachment *found = find_attachment(s, forest);
+    if (found) {
+        found->may_drive = found->may_drive || may_drive;
+        return true;
+    }
+    if (s->attachment_count == LIMIT_SESSION_FORESTS) {
+        drop_stale_attachments(s);
+    }
+    if (s->attachment_count == LIMIT_SESSION_FORESTS) {
+        return false;
+    }
+    s->attachments[s->attachment_count++] = (attachment){.forest = forest, .may_drive = may_drive};
+    return true;
+}
+
+void session_detach(session *s, uint64_t forest)
+{
+    attachment *found = find_attachment(s, forest);
+    if (found) {
+        *found = s->attachments[--s->attachment_count];
+    }
+    for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
+        subscription *sub = &s->subscriptions[i];
+        if (sub->handle && sub->forest->handle == forest) {
+            subscription_end(sub);
+        }
+    }
+}
+
+resident *session_resident(session *s, const proto_message *message, uint64_t forest, bool to_drive)
+{
+    resident *r = registry_find(&s->shared->forests, forest);
+    const attachment *open = r ? find_attachment(s, forest) : NULL;
+    if (!r) {
+        session_error(s, message->type, message->request, PROTO_ERROR_NO_FOREST, NULL);
+    } else if (!open) {
+        session_error(s, message->type, message->request, PROTO_ERROR_NOT_ALLOWED,
+                      "the forest is not open on this connection: ATTACH to it with one of its tokens first");
+    } else if (to_drive && !open->may_drive) {
+        session_error(s, message->type, message->request, PROTO_ERROR_NOT_ALLOWED, NULL);
+    } else {
+        return r;
+    }
+    return NULL;
+}
+
+forest_input *session_input(const session *s, const proto_message *message, forest_input_kind kind)
+{
+    forest_input *input = calloc(1, sizeof *input);
+    if (input) {
+        input->kind = kind;
+        input->from = (origin){.session = s->handle, .request = message->request};
+        input->arrived_us = s->shared->options.clock_us();
+    }
+    return input;
+}
+
+bool session_push(session *s, const proto_message *message, resident *r, forest_input *input)
+{
+    if (!input) {
+        session_error(s, message->type, message->request, PROTO_ERROR_NO_MEMORY, NULL);
+        return false;
+    }
+    if (registry_push(&s->shared->forests, r, input)) {
+        return true;
+    }
+    if (input->kind == FOREST_QUERY) {
+        session_error(s, message->type, message->request, PROTO_ERROR_BUSY, "%d queries wait for this forest already",
+                      LIMIT_FOREST_QUERIES);
+    } else {
+        session_error(s, message->type, message->request, PROTO_ERROR_BUSY,
+                      "%d motions and changes of parameters wait for a QUERY that advances the forest",
+                      LIMIT_FOREST_INPUTS);
+    }
+    forest_inputs_free(input);
+    return false;
+}
+
+/* ---- subscriptions ---------------------------------------------------------------------------------------------- */
+
+subscription *session_subscription(session *s, uint64_t handle)
+{
+    for (uint32_t i = 0; handle && i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
+        if (s->subscriptions[i].handle == handle) {
+            return &s->subscriptions[i];
+        }
+    }
+    return NULL;
+}
+
+/* The next in turn that may send, so that no forest starves another on the same connection. */
+static subscription *next_due(session *s, int64_t now_us)
+{
+    for (uint32_t n = 0; n < LIMIT_SESSION_SUBSCRIPTIONS; n++) {
+        uint32_t i = (s->subscription_next + n) % LIMIT_SESSION_SUBSCRIPTIONS;
+        if (subscription_is_due(&s->subscriptions[i], now_us)) {
+            s->subscription_next = (i + 1) % LIMIT_SESSION_SUBSCRIPTIONS;
+            return &s->subscriptions[i];
+        }
+    }
+    return NULL;
+}
+
+void session_stream(session *s)
+{
+    int64_t now_us = s->shared->options.clock_us();
+    while (s->state == SESSION_OPEN && s->sink.drained(s->sink.context)) {
+        subscription *sub = next_due(s, now_us);
+        if (!sub) {
+            return;
+        }
+        uint32_t skipped = 0;
+        published *frame = subscription_take(sub, now_us, &skipped);
+        s->sink.frame(s->sink.context, frame, sub->request, skipped);
+    }
+}
+
+int64_t session_stream_due(const session *s)
+{
+    int64_t due_us = INT64_MAX;
+    for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
+        const subscription *sub = &s->subscriptions[i];
+        if (sub->handle && sub->waiting && sub->credit > 0 && sub->due_us < due_us) {
+            due_us = sub->due_us;
+        }
+    }
+    return due_us;
+}

@@ -1,0 +1,112 @@
+/* session.h: one client's conversation with the daemon, apart from sockets and clocks.
+ *
+ * What comes in is a header and a payload (protocol.h); what goes out goes to a sink. A connection puts a socket behind
+ * the sink; the tests put a list there. The files session_*.c hold what each message does, by topic; protocol.c holds
+ * the table of who may say what when. */
+#ifndef SESSION_H
+#define SESSION_H
+
+#include "limits.h"
+#include "service.h"
+#include "subscription.h"
+
+/* Where a session's messages go. */
+typedef struct session_sink {
+    void *context;
+    /* Encodes and sends. The message's texts are good only during the call. */
+    void (*message)(void *context, const proto_message *message);
+    /* Sends a FRAME; takes the reference. */
+    void (*frame)(void *context, published *frame, uint64_t request, uint32_t skipped);
+    /* True if all that was given before is gone. */
+    bool (*drained)(void *context);
+} session_sink;
+
+typedef enum session_state {
+    SESSION_GREETING, /* HELLO must come */
+    SESSION_AUTH,     /* AUTH must come */
+    SESSION_OPEN,
+    SESSION_CLOSING /* nothing more is listened to; what was said is still sent */
+} session_state;
+
+/* A forest that this session may look at, or move too. */
+typedef struct attachment {
+    uint64_t forest;
+    bool may_drive;
+} attachment;
+
+typedef struct session {
+    service *shared;
+    session_sink sink;
+    uint64_t handle; /* in shared->sessions */
+    session_state state;
+    char peer[80]; /* for the log */
+    uint8_t nonce[AUTH_NONCE_SIZE];
+    uint32_t pending;       /* requests that wait for a worker */
+    uint32_t last_write_us; /* written by whoever is behind the sink: see FRAME */
+
+    uint32_t attachment_count;
+    attachment attachments[LIMIT_SESSION_FORESTS];
+    upload *uploads[LIMIT_SESSION_UPLOADS]; /* NULL: free */
+    uint64_t subscription_serial;
+    uint32_t subscription_next; /* whose turn it is */
+    subscription subscriptions[LIMIT_SESSION_SUBSCRIPTIONS];
+} session;
+
+/* False: as many sessions as the service takes. `peer` is for the log. */
+bool session_init(session *s, service *shared, const session_sink *sink, const char *peer);
+/* Ends its uploads and subscriptions; its forests live on. Accepts a zeroed one. */
+void session_fini(session *s);
+
+/* The session that asked; NULL: it is gone. */
+session *session_find(const service *shared, origin from);
+
+/* ---- what handlers say ------------------------------------------------------------------------------------------ */
+
+#if defined(__GNUC__)
+#define SESSION_FORMAT __attribute__((format(printf, 5, 6)))
+#else
+#define SESSION_FORMAT
+#endif
+
+/* Sends a message, unless the session is closing. */
+void session_send(session *s, const proto_message *message);
+
+/* An ERROR about a message of type `about`; `format` NULL: the code's own text. Where the code closes the connection,
+ * the session is closing from then on. */
+void session_error(session *s, uint16_t about, uint64_t request, int code, const char *format, ...) SESSION_FORMAT;
+/* The same for what the library said. */
+void session_error_awt(session *s, uint16_t about, uint64_t request, const awt_error *error);
+
+/* Sends BYE and closes. */
+void session_bye(session *s, const char *reason);
+
+/* Sends a frame as the answer of `request`; holds its own reference. */
+void session_frame(session *s, published *frame, uint64_t request);
+
+/* ---- forests of a session --------------------------------------------------------------------------------------- */
+
+/* Opens a forest, or widens what it may do there. False: LIMIT_SESSION_FORESTS are open. */
+bool session_attach(session *s, uint64_t forest, bool may_drive);
+/* Ends the session's subscriptions on it too. */
+void session_detach(session *s, uint64_t forest);
+
+/* The forest that the message names, if the session may use it so; NULL: an ERROR was sent. */
+resident *session_resident(session *s, const proto_message *message, uint64_t forest, bool to_drive);
+
+/* An input of this message for a forest's queue; the caller fills in `as`. NULL: no memory (session_push says so). */
+forest_input *session_input(const session *s, const proto_message *message, forest_input_kind kind);
+/* Queues it (taken; may be NULL). False: an ERROR was sent. */
+bool session_push(session *s, const proto_message *message, resident *r, forest_input *input);
+
+/* ---- subscriptions ---------------------------------------------------------------------------------------------- */
+
+/* NULL: none of that handle. */
+subscription *session_subscription(session *s, uint64_t handle);
+
+/* Sends waiting frames, one at a time as the sink drains. */
+void session_stream(session *s);
+
+/* Monotonic time at which session_stream has something to do that only the clock allows; INT64_MAX: never. */
+int64_t session_stream_due(const session *s);
+
+#endif

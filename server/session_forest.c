@@ -1,0 +1,144 @@
+/* session_forest.c: CREATE, ATTACH, DETACH, DESTROY, LIST: the life of forests. (CREATE is answered in completions.c,
+ * when a worker has made the hair.) */
+#include "handlers.h"
+#include "log.h"
+
+#include <string.h>
+
+/* The complete upload that a CREATE names; NULL: there is none. */
+static upload *find_upload(session *s, uint32_t number)
+{
+    for (uint32_t i = 0; i < LIMIT_SESSION_UPLOADS; i++) {
+        if (s->uploads[i] && s->uploads[i]->number == number && s->uploads[i]->complete) {
+            return s->uploads[i];
+        }
+    }
+    return NULL;
+}
+
+void session_create(session *s, const proto_message *message)
+{
+    const struct proto_create *create = &message->as.create;
+    awt_error error = {0};
+    recipe *making = NULL;
+    upload *file = create->source == RECIPE_FROM_UPLOAD ? find_upload(s, create->upload) : NULL;
+    if (create->source > RECIPE_FROM_UPLOAD) {
+        session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE,
+                      "source is %u; 0 is a built-in style, 1 an upload", (unsigned)create->source);
+        return;
+    }
+    if (create->source == RECIPE_FROM_UPLOAD && !file) {
+        session_error(s, message->type, message->request, PROTO_ERROR_NO_UPLOAD, NULL);
+        return;
+    }
+    awt_status status = recipe_create(create, file, &making, &error);
+    if (status == AWT_OK) {
+        origin from = {.session = s->handle, .request = message->request};
+        status = registry_create(&s->shared->forests, making, from, s->shared->options.clock_us(), &error);
+    }
+    if (status != AWT_OK) {
+        session_error_awt(s, message->type, message->request, &error);
+        return;
+    }
+    s->pending++;
+}
+
+void session_attach_forest(session *s, const proto_message *message)
+{
+    const struct proto_attach *attach = &message->as.attach;
+    resident *r = registry_find(&s->shared->forests, attach->forest);
+    if (!r) {
+        session_error(s, message->type, message->request, PROTO_ERROR_NO_FOREST, NULL);
+        return;
+    }
+    /* both are always compared, so that time does not tell which one was nearer */
+    bool drive = auth_equal(attach->token, r->drive_token, sizeof r->drive_token);
+    bool view = auth_equal(attach->token, r->view_token, sizeof r->view_token);
+    if (!drive && !view) {
+        log_write(LOG_WARN, "wrong forest token", "peer=%s", s->peer);
+        session_error(s, message->type, message->request, PROTO_ERROR_WRONG_TOKEN, NULL);
+        return;
+    }
+    if (!session_attach(s, r->handle, drive)) {
+        session_error(s, message->type, message->request, PROTO_ERROR_LIMIT,
+                      "a connection has %d forests open at most; DETACH from one", LIMIT_SESSION_FORESTS);
+        return;
+    }
+    proto_message reply = {.type = PROTO_ATTACH_REPLY, .request = message->request};
+    reply.as.attach_reply.may_drive = drive;
+    reply.as.attach_reply.time_us = r->latest->frame.time_us;
+    reply.as.attach_reply.strands = r->info.strand_count;
+    reply.as.attach_reply.points_per_strand = (uint16_t)r->info.points_per_strand;
+    session_send(s, &reply);
+}
+
+void session_detach_forest(session *s, const proto_message *message)
+{
+    session_detach(s, message->as.detach.forest);
+}
+
+/* Tells everyone who watches that there is nothing more to come. */
+static void end_subscriptions(resident *r)
+{
+    while (r->subscriptions) {
+        subscription *sub = r->subscriptions;
+        session_error(sub->session, PROTO_SUBSCRIBE, sub->request, PROTO_ERROR_NO_FOREST, "the forest was destroyed");
+        subscription_end(sub);
+    }
+}
+
+/* Answers the queries that will not get their turn. */
+static void refuse_waiting(service *shared, forest_input *waiting)
+{
+    for (const forest_input *input = waiting; input; input = input->next) {
+        session *asker = input->kind == FOREST_QUERY ? session_find(shared, input->from) : NULL;
+        if (asker) {
+            asker->pending--;
+            session_error(asker, PROTO_QUERY, input->from.request, PROTO_ERROR_NO_FOREST,
+                          "the forest was destroyed before this query had its turn");
+        }
+    }
+    forest_inputs_free(waiting);
+}
+
+void session_destroy(session *s, const proto_message *message)
+{
+    resident *r = session_resident(s, message, message->as.destroy.forest, true);
+    if (!r) {
+        return;
+    }
+    char quoted[LOG_QUOTED];
+    log_write(LOG_INFO, "forest destroyed", "peer=%s name=%s", s->peer, log_quote(r->name, strlen(r->name), quoted));
+    end_subscriptions(r);
+    session_detach(s, r->handle);
+    refuse_waiting(s->shared, registry_destroy(&s->shared->forests, r));
+    session_send(s, &(proto_message){.type = PROTO_DESTROY_REPLY, .request = message->request});
+}
+
+static struct proto_forest_info forest_line(const resident *r)
+{
+    return (struct proto_forest_info){.forest = r->handle,
+                                      .name = proto_str_of(r->name),
+                                      .time_us = r->latest->frame.time_us,
+                                      .strands = r->info.strand_count,
+                                      .finest_nodes = r->info.finest_nodes,
+                                      .active_nodes = r->latest->frame.active_nodes,
+                                      .subscribers = r->subscription_count};
+}
+
+void session_list(session *s, const proto_message *message)
+{
+    proto_message reply = {.type = PROTO_LIST_REPLY, .request = message->request};
+    struct proto_list_reply *list = &reply.as.list_reply;
+    const size_t room = sizeof list->forests.items / sizeof list->forests.items[0];
+    for (const resident *r = s->shared->forests.first; r; r = r->next) {
+        if (!r->ready || r->doomed) {
+            continue;
+        }
+        if (list->forests.count < room) {
+            list->forests.items[list->forests.count++] = forest_line(r);
+        }
+        list->total++;
+    }
+    session_send(s, &reply);
+}

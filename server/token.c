@@ -1,0 +1,148 @@
+/* token.c: see token.h.
+ *
+ * The file comes into being whole: it is written under a temporary name and linked to its own, which fails where
+ * another daemon was faster; then that one's token is read like any other. */
+#include "token.h"
+#include "limits.h"
+#include "random.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { TOKEN_FILE_MODE = 0600, TOKEN_DIRECTORY_MODE = 0700, TOKEN_OTHERS = 077 };
+
+bool token_make_directory(const char *directory, char *error, size_t error_size)
+{
+    char path[LIMIT_PATH];
+    size_t length = strlen(directory);
+    if (length == 0 || length >= sizeof path) {
+        snprintf(error, error_size, "the state directory's path is empty or longer than %d bytes", LIMIT_PATH - 1);
+        return false;
+    }
+    memcpy(path, directory, length + 1);
+    for (size_t i = 1; i <= length; i++) {
+        if (path[i] != '/' && path[i] != '\0') {
+            continue;
+        }
+        char end = path[i];
+        path[i] = '\0';
+        if (mkdir(path, TOKEN_DIRECTORY_MODE) != 0 && errno != EEXIST) {
+            snprintf(error, error_size, "the state directory %s cannot be made: %s", path, strerror(errno));
+            return false;
+        }
+        path[i] = end;
+    }
+    return true;
+}
+
+static bool write_all(int fd, const char *bytes, size_t size)
+{
+    size_t done = 0;
+    while (done < size) {
+        ssize_t wrote = write(fd, bytes + done, size - done);
+        if (wrote < 0 && errno != EINTR) {
+            return false;
+        }
+        done += wrote > 0 ? (size_t)wrote : 0;
+    }
+    return true;
+}
+
+/* Writes a new token under `temporary`, which must not exist. */
+static bool write_token(const char *temporary)
+{
+    uint8_t token[AUTH_TOKEN_SIZE];
+    char text[AUTH_TOKEN_TEXT + 1];
+    if (!random_fill(token, sizeof token)) {
+        return false;
+    }
+    auth_token_format(token, text);
+    text[AUTH_TOKEN_TEXT - 1] = '\n';
+    int fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, TOKEN_FILE_MODE);
+    if (fd < 0) {
+        return false;
+    }
+    /* fchmod: a umask may have taken rights from the owner too */
+    bool written = fchmod(fd, TOKEN_FILE_MODE) == 0 && write_all(fd, text, AUTH_TOKEN_TEXT) && fsync(fd) == 0;
+    int reason = errno;
+    if (close(fd) != 0 || !written) {
+        unlink(temporary);
+        errno = reason;
+        return false;
+    }
+    return true;
+}
+
+/* Gives the finished file its name unless that is taken. Some file systems have no links: rename, there. */
+static bool name_token(const char *temporary, const char *path)
+{
+    if (link(temporary, path) == 0 || errno == EEXIST) {
+        unlink(temporary);
+        return true;
+    }
+    if (rename(temporary, path) == 0) {
+        return true;
+    }
+    int reason = errno;
+    unlink(temporary);
+    errno = reason;
+    return false;
+}
+
+static bool make_token(const char *path, char *error, size_t error_size)
+{
+    char temporary[LIMIT_PATH + 32];
+    snprintf(temporary, sizeof temporary, "%s.%ld", path, (long)getpid());
+    unlink(temporary); /* left behind by a process of the same number that was killed here */
+    if (!write_token(temporary) || !name_token(temporary, path)) {
+        snprintf(error, error_size, "the token file %s cannot be made: %s", path, strerror(errno));
+        return false;
+    }
+    return true;
+}
+
+/* Reads and checks an open token file. */
+static bool read_token(int fd, const char *path, uint8_t token[AUTH_TOKEN_SIZE], char *error, size_t error_size)
+{
+    struct stat about;
+    if (fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) {
+        snprintf(error, error_size, "the token file %s is not a plain file", path);
+        return false;
+    }
+    if (about.st_mode & TOKEN_OTHERS) {
+        snprintf(error, error_size, "the token file %s is open to others than its owner; run: chmod 600 %s", path,
+                 path);
+        return false;
+    }
+    char text[128];
+    ssize_t got = read(fd, text, sizeof text - 1);
+    text[got > 0 ? got : 0] = '\0';
+    if (!auth_token_parse(text, token)) {
+        snprintf(error, error_size,
+                 "the token file %s does not hold 32 hexadecimal digits; remove it and a new one is made", path);
+        return false;
+    }
+    return true;
+}
+
+bool token_open(const char *path, uint8_t token[AUTH_TOKEN_SIZE], char *error, size_t error_size)
+{
+    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe in its place must not stop the start */
+    if (fd < 0 && errno == ENOENT) {
+        if (!make_token(path, error, error_size)) {
+            return false;
+        }
+        fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    }
+    if (fd < 0) {
+        snprintf(error, error_size, "the token file %s cannot be opened: %s", path, strerror(errno));
+        return false;
+    }
+    bool taken = read_token(fd, path, token, error, error_size);
+    close(fd);
+    return taken;
+}

@@ -1,0 +1,50 @@
+/* upload.h: a strand file that comes in pieces.
+ *
+ * Memory grows with the bytes that have come, never with what a peer announces, and all uploads together have one
+ * budget. A complete upload may be used by several CREATEs, each holding a reference while it waits for its worker;
+ * references belong to the I/O thread, the bytes of a complete upload may be read by any. */
+#ifndef UPLOAD_H
+#define UPLOAD_H
+
+#include "auth.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct upload_budget {
+    uint64_t used, greatest; /* bytes */
+} upload_budget;
+
+typedef struct upload {
+    unsigned references;
+    uint32_t number; /* the client's */
+    uint64_t total, received;
+    bool complete;        /* all bytes are here and match the hash */
+    unsigned char *bytes; /* [capacity], heap */
+    size_t capacity;
+    uint8_t expected[AUTH_HASH_SIZE];
+    auth_sha256 hash; /* of the bytes received */
+    upload_budget *budget;
+} upload;
+
+typedef enum upload_result {
+    UPLOAD_TAKEN,
+    UPLOAD_OUT_OF_ORDER, /* the piece does not begin where the last one ended, or `total` or the hash changed */
+    UPLOAD_TOO_LONG,     /* the piece goes past `total` */
+    UPLOAD_WRONG_HASH,
+    UPLOAD_OVER_BUDGET,
+    UPLOAD_NO_MEMORY
+} upload_result;
+
+/* An empty upload with one reference. NULL: no memory. The budget must outlive it. */
+upload *upload_create(uint32_t number, uint64_t total, const uint8_t expected[AUTH_HASH_SIZE], upload_budget *budget);
+upload *upload_hold(upload *up);
+/* Accepts NULL. */
+void upload_release(upload *up);
+
+/* Takes the next piece. After anything but UPLOAD_TAKEN the upload is of no further use. */
+upload_result upload_add(upload *up, uint64_t total, uint64_t offset, const uint8_t expected[AUTH_HASH_SIZE],
+                         const unsigned char *piece, size_t size);
+
+#endif

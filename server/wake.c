@@ -1,0 +1,55 @@
+/* wake.c: see wake.h. */
+#include "wake.h"
+#include "net.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stddef.h>
+#include <unistd.h>
+
+/* Signal handlers have no argument: what they touch is here. */
+static wake *signal_wake;
+static volatile sig_atomic_t stop_asked;
+
+bool wake_init(wake *w)
+{
+    return net_pipe(w->ends);
+}
+
+void wake_ring(void *context)
+{
+    const wake *w = context;
+    int kept = errno; /* the handler must not disturb what it interrupts */
+    if (write(w->ends[1], "", 1) < 0) {
+        /* full: it has been rung already */
+    }
+    errno = kept;
+}
+
+void wake_clear(wake *w)
+{
+    char rung[256];
+    while (read(w->ends[0], rung, sizeof rung) > 0) {
+    }
+}
+
+static void on_signal(int number)
+{
+    (void)number;
+    stop_asked = 1;
+    wake_ring(signal_wake);
+}
+
+void wake_on_signals(wake *w)
+{
+    struct sigaction stop = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
+    signal_wake = w;
+    sigaction(SIGTERM, &stop, NULL);
+    sigaction(SIGINT, &stop, NULL);
+    sigaction(SIGPIPE, &ignore, NULL);
+}
+
+bool wake_stop_asked(void)
+{
+    return stop_asked != 0;
+}

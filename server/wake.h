@@ -1,0 +1,25 @@
+/* wake.h: the pipe that ends poll's sleep: rung by workers when a job is done and by signals that ask the daemon to
+ * stop. */
+#ifndef WAKE_H
+#define WAKE_H
+
+#include <stdbool.h>
+
+typedef struct wake {
+    int ends[2]; /* [0] is polled */
+} wake;
+
+/* False: no descriptors left. The pipe stays until the process ends, for the signals that may still come. */
+bool wake_init(wake *w);
+
+/* Ends the present or the next sleep. Any thread, and signal handlers. `context` is a wake. */
+void wake_ring(void *context);
+/* Before looking at what was rung for. */
+void wake_clear(wake *w);
+
+/* From now on SIGTERM and SIGINT ring `w` and wake_stop_asked is true after one; SIGPIPE is ignored. Once in a process;
+ * `w` must live until its end. */
+void wake_on_signals(wake *w);
+bool wake_stop_asked(void);
+
+#endif
