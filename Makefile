@@ -1,0 +1,140 @@
+# awtd: hair simulation as a service. `make help` says what there is.
+config ?= release
+CC ?= cc
+CXX ?= c++
+B := build/$(config)
+Q := $(if $(V),,@)
+
+FLAGS_debug := -O0 -g
+FLAGS_release := -O2 -g
+FLAGS_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+FLAGS_tsan := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
+FLAGS_coverage := -O0 -g --coverage
+FLAGS := $(FLAGS_$(config)) $(if $(native),-march=native)
+$(if $(FLAGS),,$(error config is one of debug release asan tsan coverage, not "$(config)"))
+
+# Same bits everywhere: no contraction of a*b+c, no reassociation.
+WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
+CFLAGS_ALL := -std=c17 -D_POSIX_C_SOURCE=200809L -ffp-contract=off $(WARN) -Wmissing-prototypes -pthread $(FLAGS) $(CFLAGS)
+CXXFLAGS_ALL := -std=c++17 -ffp-contract=off $(WARN) -pthread $(FLAGS) $(CXXFLAGS)
+LDLIBS_ALL := -ltinygltf -ldraco -lm -pthread $(LDLIBS)
+
+# Who may include what (the header table of the house): each room sees only these folders.
+INC_core := -Icore
+INC_proto := -Iproto
+INC_server := -Iserver -Icore -Iproto
+INC_clients := -Iclients -Icore -Iproto
+INC_tests := -Itests -Iserver -Iclients -Icore -Iproto -I$(B)
+
+SRC_core := $(wildcard core/*/*.c core/*/*.cc)
+SRC_proto := $(wildcard proto/*.c)
+SRC_server := $(wildcard server/*.c)
+SRC_clients := $(filter-out clients/awtctl%,$(wildcard clients/*.c clients/*/*.c))
+SRC_awtctl := $(wildcard clients/awtctl*.c)
+SRC_unit := tests/main.c $(wildcard tests/unit/*.c tests/e2e/*.c)
+SRC_bench := $(wildcard tests/bench/*.c)
+SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_unit) $(SRC_bench)
+
+objects = $(patsubst %,$(B)/obj/%.o,$(1))
+LIBAWT := $(B)/libawt.a
+LIBPROTO := $(B)/libawtproto.a
+LIBCLIENT := $(B)/libawtclient.a
+LIBSERVER := $(B)/libawtserver.a
+PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-bench
+
+.PHONY: all help demo test soak bench format lint install clean deps deps-test programs tests-binary
+.DELETE_ON_ERROR:
+
+all: programs $(B)/rooms.ok
+
+programs: $(PROGRAMS)
+ifeq ($(config),release)
+	@ln -sf release/awtd release/awtctl release/awt-bench build/
+endif
+
+tests-binary: $(B)/tests
+
+help:
+	@echo 'make demo      installs what is missing, builds, plays a leaning head for 10 s, leaves GLB files in build/demo'
+	@echo '               GROOM=FILE MOTION=FILE JOINT=NAME SCALE=S UP=y|z HEAD=x,y,z,r: your own hair and motion'
+	@echo 'make test      installs what is missing, builds, runs every test (DEPS=never: installs nothing)'
+	@echo 'make soak      the long tests'
+	@echo 'make all       builds; config=debug|release|asan|tsan|coverage, native=1, CC=clang CXX=clang++, V=1'
+	@echo 'make bench format lint install clean'
+
+$(B)/awtd: $(B)/obj/server/main.c.o $(LIBSERVER) $(LIBAWT) $(LIBPROTO)
+$(B)/awtctl: $(call objects,$(SRC_awtctl)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(B)/tests: $(call objects,$(SRC_unit)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(PROGRAMS) $(B)/tests:
+	@echo "  LD   $@"
+	$(Q)$(CXX) $(FLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS_ALL)
+
+$(LIBAWT): $(call objects,$(SRC_core))
+$(LIBPROTO): $(call objects,$(SRC_proto))
+$(LIBCLIENT): $(call objects,$(SRC_clients))
+$(LIBSERVER): $(call objects,$(filter-out server/main.c,$(SRC_server)))
+$(LIBAWT) $(LIBPROTO) $(LIBCLIENT) $(LIBSERVER):
+	@echo "  AR   $@"
+	@rm -f $@
+	$(Q)$(AR) rcs $@ $^
+
+room = $(firstword $(subst /, ,$(1)))
+$(B)/obj/%.c.o: %.c $(B)/flags
+	@mkdir -p $(@D)
+	@echo "  CC   $<"
+	$(Q)$(CC) $(CFLAGS_ALL) $(INC_$(call room,$<)) -MMD -MP -c -o $@ $<
+$(B)/obj/%.cc.o: %.cc $(B)/flags
+	@mkdir -p $(@D)
+	@echo "  CXX  $<"
+	$(Q)$(CXX) $(CXXFLAGS_ALL) $(INC_$(call room,$<)) -MMD -MP -c -o $@ $<
+
+# Another compiler or other flags: everything is built anew.
+.PHONY: FORCE
+$(B)/flags: FORCE
+	@mkdir -p $(@D)
+	@echo '$(CC) $(CXX) $(CFLAGS_ALL) $(CXXFLAGS_ALL)' | cmp -s - $@ || echo '$(CC) $(CXX) $(CFLAGS_ALL) $(CXXFLAGS_ALL)' > $@
+
+# The list of tests is what the test files define.
+$(B)/test_list.h: $(SRC_unit)
+	@mkdir -p $(@D)
+	@sed -n 's/^TEST(\([a-z0-9_]*\))$$/TEST_ENTRY(\1)/p' $(filter-out tests/main.c,$(SRC_unit)) > $@
+$(B)/obj/tests/main.c.o: $(B)/test_list.h
+
+# The header table, checked on what the compiler really read.
+$(B)/rooms.ok: tests/lint/rooms.awk $(call objects,$(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl))
+	@awk -f tests/lint/rooms.awk $(patsubst %,$(B)/obj/%.d,$(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl))
+	@touch $@
+
+deps:
+	@DEPS='$(DEPS)' sh tests/deps.sh run
+deps-test:
+	@DEPS='$(DEPS)' sh tests/deps.sh test
+
+demo: deps
+	@$(MAKE) --no-print-directory programs config=release
+	@GROOM='$(GROOM)' MOTION='$(MOTION)' JOINT='$(JOINT)' SCALE='$(SCALE)' UP='$(UP)' HEAD='$(HEAD)' sh clients/demo.sh
+
+test: deps-test
+	@sh tests/run.sh
+
+soak: deps-test
+	@sh tests/soak.sh
+
+bench: programs
+	$(B)/awt-bench
+
+format:
+	clang-format -i $(SRC_ALL) $(wildcard */*.h */*/*.h)
+lint: all
+	clang-format --dry-run --Werror $(SRC_ALL) $(wildcard */*.h */*/*.h)
+
+prefix ?= /usr/local
+install: programs
+	install -d $(DESTDIR)$(prefix)/bin
+	install $(PROGRAMS) $(DESTDIR)$(prefix)/bin
+
+clean:
+	rm -rf build
+
+-include $(patsubst %,$(B)/obj/%.d,$(SRC_ALL))

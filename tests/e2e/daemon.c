@@ -1,0 +1,132 @@
+/* daemon.c: see daemon.h. */
+#include "e2e/daemon.h"
+
+#include "base/options.h"
+#include "check.h"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static void run_daemon(const char *program, int out, char *const *arguments)
+{
+    int log = open("/dev/null", O_WRONLY);
+    const char *wanted = getenv("AWT_TEST_LOG"); /* where the daemons' logs go, for who looks for a fault */
+    if (wanted) {
+        close(log);
+        log = open(wanted, O_WRONLY | O_CREAT | O_APPEND, 0600);
+    }
+    dup2(out, STDOUT_FILENO);
+    dup2(log, STDERR_FILENO);
+    execv(program, arguments);
+    _exit(127);
+}
+
+/* Reads "listening on HOST:PORT" from the daemon's standard output. */
+static bool read_address(int from, char *address, size_t size)
+{
+    char line[128];
+    size_t used = 0;
+    while (used + 1 < sizeof line) {
+        ssize_t got = read(from, line + used, 1);
+        if (got <= 0) {
+            return false;
+        }
+        if (line[used] == '\n') {
+            break;
+        }
+        used++;
+    }
+    line[used] = '\0';
+    static const char prefix[] = "listening on ";
+    if (strncmp(line, prefix, sizeof prefix - 1) != 0) {
+        return false;
+    }
+    snprintf(address, size, "%s", line + sizeof prefix - 1);
+    return true;
+}
+
+bool daemon_start(daemon_process *daemon, int workers, const char *const *arguments)
+{
+    memset(daemon, 0, sizeof *daemon);
+    snprintf(daemon->state_directory, sizeof daemon->state_directory, "/tmp/awtd-test-XXXXXX");
+    if (!mkdtemp(daemon->state_directory)) {
+        return false;
+    }
+    snprintf(daemon->token_file, sizeof daemon->token_file, "%s/token", daemon->state_directory);
+    char program[1024], count[16];
+    snprintf(program, sizeof program, "%s/awtd", check_build_directory());
+    snprintf(count, sizeof count, "%d", workers);
+    const char *all[24] = {program, "--listen",    "127.0.0.1:0",          "--workers",
+                           count,   "--state-dir", daemon->state_directory};
+    size_t used = 7;
+    for (; arguments && *arguments && used + 1 < sizeof all / sizeof all[0]; arguments++) {
+        all[used++] = *arguments;
+    }
+    int out[2];
+    if (pipe(out) != 0) {
+        return false;
+    }
+    daemon->pid = fork();
+    if (daemon->pid == 0) {
+        close(out[0]);
+        run_daemon(program, out[1], (char *const *)all);
+    }
+    close(out[1]);
+    bool up = daemon->pid > 0 && read_address(out[0], daemon->address, sizeof daemon->address);
+    close(out[0]);
+    return up;
+}
+
+int daemon_stop(daemon_process *daemon)
+{
+    int status = 0, result = -1;
+    kill(daemon->pid, SIGTERM);
+    for (int n = 0; n < 2000; n++) {
+        if (waitpid(daemon->pid, &status, WNOHANG) == daemon->pid) {
+            result = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+            break;
+        }
+        nanosleep(&(struct timespec){0, 10000000}, NULL);
+    }
+    if (result < 0) {
+        kill(daemon->pid, SIGKILL);
+        waitpid(daemon->pid, &status, 0);
+    }
+    unlink(daemon->token_file);
+    rmdir(daemon->state_directory);
+    return result;
+}
+
+awtclient *daemon_client(const daemon_process *daemon)
+{
+    awtclient_error error = {0};
+    awtclient *client = awtclient_open(
+        &(awtclient_options){.address = daemon->address, .token_file = daemon->token_file, .name = "tests"}, &error);
+    CHECK_TEXT(client ? "" : error.text, "");
+    return client;
+}
+
+int daemon_socket(const daemon_process *daemon)
+{
+    char host[48], port[8];
+    struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM}, *list = NULL;
+    if (!options_split_address(daemon->address, host, sizeof host, port, sizeof port) ||
+        getaddrinfo(host, port, &hints, &list) != 0) {
+        return -1;
+    }
+    int fd = socket(list->ai_family, list->ai_socktype, 0);
+    if (fd >= 0 && connect(fd, list->ai_addr, list->ai_addrlen) != 0) {
+        close(fd);
+        fd = -1;
+    }
+    freeaddrinfo(list);
+    return fd;
+}

@@ -1,0 +1,27 @@
+/* daemon.h: a real awtd beside the tests: the one of the same build, on a free loopback port, with a state directory of
+ * its own. */
+#ifndef E2E_DAEMON_H
+#define E2E_DAEMON_H
+
+#include "awtclient.h"
+
+#include <sys/types.h>
+
+typedef struct daemon_process {
+    pid_t pid;
+    char address[128];
+    char state_directory[64];
+    char token_file[96];
+} daemon_process;
+
+/* Starts it with so many workers and further arguments (NULL-terminated; may be NULL). False: it did not come up. */
+bool daemon_start(daemon_process *daemon, int workers, const char *const *arguments);
+/* Sends SIGTERM and waits. The exit status; -1 if it did not exit by itself within 20 s (then it is killed). */
+int daemon_stop(daemon_process *daemon);
+
+/* A client of it, or NULL after a failed check. */
+awtclient *daemon_client(const daemon_process *daemon);
+/* A bare connected socket, or -1. */
+int daemon_socket(const daemon_process *daemon);
+
+#endif

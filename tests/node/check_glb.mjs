@@ -1,0 +1,156 @@
+// check_glb.mjs FILE.glb...: what readers that share no code with awtd make of its frames.
+//
+// gltf-validator must find no error. It does not look inside the Draco data, so draco3d then decodes each primitive:
+// counts, bounds and, where FILE.glb.f32 stands beside the file (raw little-endian floats of the ribbon vertices before
+// quantisation), every position within a quantisation step. One line a file; exit 1 on any fault.
+import { existsSync, readFileSync } from 'node:fs';
+import validator from 'gltf-validator';
+import { readFrame } from './frame.mjs';
+
+const RIBBON_BITS = 14;
+const SEVERITY = ['error', 'warning', 'information', 'hint'];
+
+async function validate(bytes, faults) {
+  const report = await validator.validateBytes(new Uint8Array(bytes), { maxIssues: 100 });
+  for (const issue of report.issues.messages) {
+    const line = `${SEVERITY[issue.severity]} ${issue.code} at ${issue.pointer ?? issue.offset}: ${issue.message}`;
+    if (issue.severity === 0) {
+      faults.push(line);
+    } else if (issue.severity === 1) {
+      console.log(`  ${line}`);
+    }
+  }
+  return report.issues;
+}
+
+/** What the glTF JSON says that a frame of awtd must say. */
+function checkFrame({ json, node }, faults) {
+  const expect = (holds, text) => holds || faults.push(text);
+  const draco = 'KHR_draco_mesh_compression';
+  expect(json.asset.generator === 'awtd', 'asset.generator is not awtd');
+  expect(Number.isSafeInteger(json.asset.extras?.time_us), 'asset.extras.time_us is no whole number');
+  expect(json.extensionsUsed?.includes(draco) && json.extensionsRequired?.includes(draco), `${draco} is not required`);
+  expect(node.name === 'hair', 'the node is not named hair');
+  expect(node.translation?.length === 3 && node.rotation?.length === 4, 'the node has no head pose');
+  expect(json.accessors.every((accessor) => accessor.bufferView === undefined), 'an accessor has a bufferView');
+  const material = json.materials[0];
+  expect(material.name === 'hair' && material.doubleSided, 'the material is not a doubleSided one named hair');
+}
+
+function checkBounds(primitive, faults) {
+  const { position, indices } = primitive.accessors;
+  const least = [Infinity, Infinity, Infinity], greatest = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < primitive.positions.length; i++) {
+    least[i % 3] = Math.min(least[i % 3], primitive.positions[i]);
+    greatest[i % 3] = Math.max(greatest[i % 3], primitive.positions[i]);
+  }
+  if (position.count * 3 !== primitive.positions.length || indices.count !== primitive.indices.length) {
+    faults.push(`counts ${position.count}, ${indices.count} are not those of the data`);
+  }
+  if (primitive.mode !== 4 || indices.componentType !== 5123 || position.componentType !== 5126) {
+    faults.push('not TRIANGLES of unsigned shorts over floats');
+  }
+  for (let k = 0; k < 3; k++) {
+    if (position.min[k] !== least[k] || position.max[k] !== greatest[k]) {
+      faults.push(`min ${position.min[k]}, max ${position.max[k]} are not the decoded ${least[k]}, ${greatest[k]}`);
+    }
+  }
+}
+
+/** Every ribbon's triangles over its own vertices, left and right edge in turn. */
+function checkTriangles(primitive, pointsPerStrand, faults) {
+  let at = 0;
+  for (let s = 0; s < primitive.extras.strands; s++) {
+    for (let i = 0; i + 1 < pointsPerStrand; i++) {
+      const first = (s * pointsPerStrand + i) * 2;
+      for (const step of [0, 1, 2, 3, 2, 1]) {
+        if (primitive.indices[at++] !== first + step) {
+          faults.push(`triangle ${Math.floor((at - 1) / 3)} is not strand ${s}'s`);
+          return;
+        }
+      }
+    }
+  }
+  if (at !== primitive.indices.length) {
+    faults.push('triangles beyond the last strand');
+  }
+}
+
+/** Greatest distance along an axis from the expected vertices, in quantisation steps; null where none are given. */
+function compareWithSidecar(file, frame, faults) {
+  if (!existsSync(`${file}.f32`)) {
+    return null;
+  }
+  const raw = readFileSync(`${file}.f32`);
+  const expected = new Float32Array(raw.buffer.slice(raw.byteOffset, raw.byteOffset + raw.byteLength));
+  const decoded = frame.primitives.map((primitive) => primitive.positions);
+  const total = decoded.reduce((sum, positions) => sum + positions.length, 0);
+  if (total !== expected.length) {
+    faults.push(`${total / 3} vertices decoded, ${expected.length / 3} expected`);
+    return null;
+  }
+  const { step } = frame.primitives[0].box;
+  let at = 0, worst = 0;
+  for (const positions of decoded) {
+    for (const value of positions) {
+      worst = Math.max(worst, Math.abs(value - expected[at++]) / step);
+    }
+  }
+  if (!(worst <= 1)) {
+    faults.push(`a position is ${worst.toFixed(2)} quantisation steps from the simulation's`);
+  }
+  return worst;
+}
+
+/** One box for all patches, or the patches' edges would not meet from frame to frame. */
+function checkBox(frame, faults) {
+  const boxes = new Set(frame.primitives.map((primitive) => JSON.stringify(primitive.box)));
+  if (boxes.size !== 1 || frame.primitives[0].box.bits !== RIBBON_BITS) {
+    faults.push(`quantisation boxes ${[...boxes].join(' ')}`);
+  }
+}
+
+async function checkFile(file) {
+  const faults = [];
+  const bytes = readFileSync(file);
+  const issues = await validate(bytes, faults);
+  const frame = await readFrame(bytes);
+  checkFrame(frame, faults);
+  const { strands, points_per_strand: points } = frame.node.extras;
+  let next = 0;
+  for (const primitive of frame.primitives) {
+    checkBounds(primitive, faults);
+    checkTriangles(primitive, points, faults);
+    if (primitive.extras.first_strand !== next || primitive.positions.length !== primitive.extras.strands * points * 6) {
+      faults.push(`the patch at strand ${primitive.extras.first_strand} does not follow strand ${next}`);
+    }
+    next += primitive.extras.strands;
+  }
+  if (next !== strands) {
+    faults.push(`${next} strands in patches, ${strands} in the node`);
+  }
+  checkBox(frame, faults);
+  const worst = compareWithSidecar(file, frame, faults);
+  const compared = worst === null ? 'no positions to compare' : `positions within ${worst.toFixed(2)} steps`;
+  console.log(`${faults.length ? 'FAIL' : 'ok  '} ${file}: ${strands} strands of ${points}, ` +
+    `${frame.primitives.length} patches, ${bytes.length} bytes, ${issues.numWarnings} warnings, ${compared}`);
+  faults.forEach((fault) => console.log(`  ${fault}`));
+  return faults.length === 0;
+}
+
+const files = process.argv.slice(2);
+if (files.length === 0) {
+  console.error('usage: node check_glb.mjs FILE.glb...');
+  process.exit(2);
+}
+let failed = 0;
+for (const file of files) {
+  try {
+    failed += (await checkFile(file)) ? 0 : 1;
+  } catch (error) {
+    console.log(`FAIL ${file}: ${error.message}`);
+    failed++;
+  }
+}
+console.log(`${files.length - failed} passed, ${failed} failed, 0 skipped`);
+process.exit(failed ? 1 : 0);

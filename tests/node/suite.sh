@@ -1,0 +1,47 @@
+#!/bin/sh
+# suite.sh BUILD: gltf-validator and draco3d judge frames of the encoder, against the positions that went in, and what the command
+# line client leaves behind after playing each style.
+set -u
+cd "$(dirname "$0")/../.."
+build=$1
+passed=0 failed=0
+if [ ! -d tests/node/node_modules/gltf-validator ] || ! command -v node >/dev/null 2>&1; then
+    echo "skip: node or its packages are not here"
+    echo "0 passed, 0 failed, 5 skipped"
+    exit 0
+fi
+work=$(mktemp -d)
+daemon=
+trap '[ -z "$daemon" ] || { kill $daemon; wait $daemon; } 2>/dev/null; rm -rf "$work"' EXIT
+
+# judge NAME COMMAND...: the command writes GLB files into $work/NAME, which other tools then read.
+judge() {
+    name=$1
+    shift
+    if "$@" >"$work/$name.log" 2>&1 && node tests/node/check_glb.mjs "$work/$name"/*.glb >>"$work/$name.log" 2>&1; then
+        passed=$((passed + 1))
+        echo "ok   $name: $(ls "$work/$name" | grep -c 'glb$') files"
+    else
+        failed=$((failed + 1))
+        cat "$work/$name.log"
+        echo "FAIL $name"
+    fi
+}
+
+mkdir "$work/frames"
+judge frames env AWT_FRAMES="$work/frames" "$build/tests" geom_frames_for_other_readers
+
+"$build/awtd" --listen 127.0.0.1:0 --state-dir "$work/state" >"$work/out" 2>"$work/log" &
+daemon=$!
+address=
+for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+    address=$(sed -n 's/^listening on //p' "$work/out")
+    [ -n "$address" ] && break
+    sleep 0.5
+done
+for style in short short-curly long long-curly; do
+    judge $style "$build/awtctl" play --connect "$address" --token-file "$work/state/token" --style $style --strands 2000 \
+        --motion lean --frames 120 --every 40 --out "$work/$style" --quiet --json "$work/$style.json"
+done
+echo "$passed passed, $failed failed, 0 skipped"
+[ $failed -eq 0 ]

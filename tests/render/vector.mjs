@@ -1,0 +1,14 @@
+// vector.mjs: three-component arrays and unit quaternions x y z w.
+
+export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const scale = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const length = (a) => Math.hypot(a[0], a[1], a[2]);
+export const unit = (a) => scale(a, 1 / (length(a) || 1));
+
+export function rotate([x, y, z, w], v) {
+  const t = scale(cross([x, y, z], v), 2);
+  return add(add(v, scale(t, w)), cross([x, y, z], t));
+}

@@ -1,0 +1,13 @@
+#!/bin/sh
+# run.sh: every test: unit tests and daemon with client end to end, with gcc and then with clang under ASan and UBSan, and what
+# the command line client writes before other people's glTF tools. Its last line counts all.
+set -u
+cd "$(dirname "$0")/.."
+. tests/suites.sh
+
+build config=release
+suite "every test, gcc -O2" build/release/tests
+suite "awtctl's files before other glTF tools" sh tests/node/suite.sh build/release
+build config=asan CC=clang CXX=clang++
+suite "every test, clang, ASan and UBSan" build/asan/tests
+finish

@@ -1,0 +1,45 @@
+# suites.sh: what run.sh and soak.sh share: building, running a suite, counting. Sourced from the checkout's top.
+passed=0 failed=0 skipped=0
+jobs=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
+mkdir -p build
+log=build/test.log
+: >"$log"
+
+# Adds up the "N passed, N failed, N skipped" line that ends file $1.
+count() {
+    line=$(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed, \([0-9]*\) skipped$/\1 \2 \3/p' "$1" | tail -n 1)
+    if [ -z "$line" ]; then
+        failed=$((failed + 1))
+        tail -n 20 "$1"
+        echo "FAIL: it ended without a count"
+        return
+    fi
+    set -- $line
+    passed=$((passed + $1)) failed=$((failed + $2)) skipped=$((skipped + $3))
+}
+
+# suite NAME COMMAND...: runs it, shows what failed and what was skipped, counts.
+suite() {
+    echo "== $1"
+    shift
+    "$@" >build/suite.log 2>&1
+    cat build/suite.log >>"$log"
+    grep -v '^ok  ' build/suite.log | tail -n 60
+    count build/suite.log
+}
+
+# build ARGUMENTS...: programs and tests of one configuration; a build that fails ends everything.
+build() {
+    echo "== building $*"
+    make --no-print-directory -j"$jobs" all tests-binary "$@" >build/make.log 2>&1 && return
+    grep -v '^  [A-Z]* ' build/make.log | tail -n 40
+    echo "0 passed, 1 failed"
+    exit 1
+}
+
+finish() {
+    echo "everything: $log"
+    echo "$passed passed, $failed failed, $skipped skipped"
+    [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+    exit
+}

@@ -1,0 +1,54 @@
+/* test_golden.c: the very bits that a known motion gives, whatever compiler, optimisation or machine. A change of these
+ * numbers is a change of the physics, and is made on purpose. */
+#include "check.h"
+#include "fixture.h"
+
+#include "base/trig.h"
+
+/* A bow and a shake of the head, from our own sine. */
+static awt_motion bow(int64_t time_us)
+{
+    double t = (double)time_us * 1e-6, sine, cosine, turn_sine, turn_cosine;
+    trig_sin_cos(5.0 * t, &sine, &cosine);
+    trig_sin_cos(0.5 * sine, &turn_sine, &turn_cosine);
+    awt_motion m = {.time_us = time_us};
+    m.head.position[2] = m.body.position[2] = 0.3 * sine;
+    m.head.position[1] = m.body.position[1] = 0.1 * (cosine - 1.0);
+    m.head.orientation[0] = m.body.orientation[0] = turn_sine;
+    m.head.orientation[3] = m.body.orientation[3] = turn_cosine;
+    return m;
+}
+
+static uint64_t hash_of_bow(const char *style, uint32_t *splits)
+{
+    const double zero[3] = {0, 0, 0};
+    awt_forest *f = fixture_forest(fixture_groom(style, 1000), style, zero, zero);
+    for (int n = 1; n <= 200; n++) {
+        awt_motion m = bow((int64_t)n * 12000); /* two sub-steps each, and not of 10 ms */
+        awt_step_stats stats;
+        CHECK_INT(awt_forest_move(f, &m, NULL), AWT_OK);
+        CHECK_INT(awt_forest_advance(f, m.time_us, &stats, NULL), AWT_OK);
+        *splits += stats.splits;
+    }
+    uint64_t hash = awt_forest_hash(f);
+    awt_forest_destroy(f);
+    return hash;
+}
+
+TEST(golden_bits_of_a_known_motion)
+{
+    static const struct {
+        const char *style;
+        uint64_t hash;
+    } golden[] = {
+        {"short", UINT64_C(0x2f0fece2522f4808)},
+        {"short-curly", UINT64_C(0xf7c6df105043958d)},
+        {"long", UINT64_C(0x21bbc74d3511251e)},
+        {"long-curly", UINT64_C(0x4eb68ba97f837305)},
+    };
+    for (size_t k = 0; k < sizeof golden / sizeof golden[0]; k++) {
+        uint32_t splits = 0;
+        CHECK_U64(hash_of_bow(golden[k].style, &splits), golden[k].hash);
+        CHECK(splits > 10);
+    }
+}
