@@ -1,7 +1,7 @@
 /* bind.c: each strand attached to its finest GC (AWT §2.2). The search for a point's station begins at the same way
  * from the root, counted in the mean length of the GC's strands, and goes on to the nearest in space, so that a point
  * lies beside its station and not ahead of it; what is longer than the mean hangs on the last station. */
-#include "groom/build.h"
+#include "groom/draft.h"
 
 #include "sim/evaluate.h"
 
@@ -40,13 +40,13 @@ static uint32_t nearest_station(const wisp_stations *stations, uint32_t at, vec3
 }
 
 /* Binds the points of strand k; returns the largest offset. */
-static float bind_strand(groom_build *build, uint32_t k, const wisp_stations *stations)
+static float bind_strand(groom_draft *build, uint32_t k, const wisp_stations *stations)
 {
     awt_groom *groom = build->groom;
     const uint32_t points = groom->info.points_per_strand;
     polyline line;
     vec3 own[AWT_MAX_POINTS_PER_STRAND];
-    build_measure(build, k, &line);
+    draft_measure(build, k, &line);
     polyline_resample(&line, points, own);
     polyline_measure(&line, &own[0].x, points);
     float largest = 0.0f;
@@ -61,11 +61,11 @@ static float bind_strand(groom_build *build, uint32_t k, const wisp_stations *st
     return largest;
 }
 
-static void measure_strands(groom_build *build)
+static void measure_strands(groom_draft *build)
 {
     polyline line;
     for (uint32_t k = 0; k < build->groom->info.strand_count; k++) {
-        build_measure(build, k, &line);
+        draft_measure(build, k, &line);
         build->length_m[k] = polyline_length(&line);
     }
 }
@@ -79,7 +79,7 @@ static double wisp_length(const vec3 *centres, uint32_t sections)
     return length;
 }
 
-static void bind_wisp(groom_build *build, uint32_t w)
+static void bind_wisp(groom_draft *build, uint32_t w)
 {
     awt_groom *groom = build->groom;
     const uint32_t sections = groom->info.sections;
@@ -96,18 +96,18 @@ static void bind_wisp(groom_build *build, uint32_t w)
         float offset = bind_strand(build, k, &stations);
         largest = offset > largest ? offset : largest;
     }
-    double reach = wisp_length(centres, sections) * BUILD_STRAIN + (double)largest;
+    double reach = wisp_length(centres, sections) * DRAFT_STRAIN + (double)largest;
     build->reach_m = reach > build->reach_m ? reach : build->reach_m;
 }
 
-void bind_strands(groom_build *build)
+void bind_strands(groom_draft *build)
 {
     awt_groom *groom = build->groom;
     const uint32_t finest = groom->info.wisp_count[groom->info.levels - 1];
     measure_strands(build);
     for (uint32_t w = 0; w < finest; w++) {
         if (w % 64 == 0) {
-            build_report(build, 0.7 + 0.3 * w / finest);
+            draft_report(build, 0.7 + 0.3 * w / finest);
         }
         bind_wisp(build, w);
     }

@@ -1,6 +1,6 @@
 /* build.c: awt_groom_build, stage by stage. The sizes are planned first, so that all memory is taken before the work
  * begins and no stage can fail: one arena for the groom, one for the scratch of the build. */
-#include "groom/build.h"
+#include "groom/draft.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -58,7 +58,7 @@ static void lay_out_groom(awt_groom *groom, arena *memory)
     groom->strand_offset = ARENA_PUSH(memory, vec3, points);
 }
 
-static void lay_out_scratch(groom_build *build, arena *memory)
+static void lay_out_scratch(groom_draft *build, arena *memory)
 {
     const size_t strands = build->groom->info.strand_count;
     build->features = ARENA_PUSH(memory, float, strands *CLUSTER_FEATURES);
@@ -71,7 +71,7 @@ static void lay_out_scratch(groom_build *build, arena *memory)
     build->length_m = ARENA_PUSH(memory, double, strands);
 }
 
-static bool take_memory(groom_build *build)
+static bool take_memory(groom_draft *build)
 {
     arena counting = arena_counting();
     lay_out_groom(build->groom, &counting);
@@ -112,7 +112,7 @@ static int compare_lengths(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void describe_lengths(groom_build *build)
+static void describe_lengths(groom_draft *build)
 {
     awt_groom_info *info = &build->groom->info;
     qsort(build->length_m, info->strand_count, sizeof *build->length_m, compare_lengths);
@@ -135,10 +135,10 @@ static void describe_radii(awt_groom *groom)
 
 /* The roots' bounds, grown by the longest strand under strain or by what a wisp can swing out, if that is more; never
  * smaller than the head (CONTRACT.md, Geometry). */
-static void describe_box(groom_build *build)
+static void describe_box(groom_draft *build)
 {
     awt_groom_info *info = &build->groom->info;
-    double by_strand = info->longest_strand_m * BUILD_STRAIN * BUILD_STRAIN;
+    double by_strand = info->longest_strand_m * DRAFT_STRAIN * DRAFT_STRAIN;
     double margin = by_strand > build->reach_m ? by_strand : build->reach_m;
     for (int axis = 0; axis < 3; axis++) {
         double least = 0.0, most = 0.0;
@@ -157,7 +157,7 @@ awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
                            void (*progress)(void *context, double share), void *context, awt_groom **out,
                            awt_error *error)
 {
-    groom_build build = {.strands = strands, .progress = progress, .context = context};
+    groom_draft build = {.strands = strands, .progress = progress, .context = context};
     groom_plan plan;
     *out = NULL;
     awt_status status = plan_make(strands, def, &plan, error);
@@ -180,7 +180,7 @@ awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
     describe_radii(build.groom);
     describe_box(&build);
     arena_fini(&build.memory);
-    build_report(&build, 1.0);
+    draft_report(&build, 1.0);
     *out = build.groom;
     return AWT_OK;
 

@@ -5,7 +5,7 @@
  * the helix at every other side. So the mean is taken four times as densely, and where it is much longer than the
  * way it covers it is smoothed into the axis of the curl before sections are taken from it; the curl is then in the
  * radius and in the strands' offsets. Hair that is merely curved is left as it is. */
-#include "groom/build.h"
+#include "groom/draft.h"
 
 #include <string.h>
 
@@ -26,14 +26,14 @@ typedef struct wisp_fit {
     double strand_length_m; /* mean */
 } wisp_fit;
 
-static void average_strands(const groom_build *build, uint32_t first, uint32_t end, wisp_fit *fit)
+static void average_strands(const groom_draft *build, uint32_t first, uint32_t end, wisp_fit *fit)
 {
     polyline line;
     vec3 sample[FIT_MAX_POINTS];
     memset(fit->mean, 0, fit->point_count * sizeof *fit->mean);
     fit->strand_length_m = 0.0;
     for (uint32_t k = first; k < end; k++) {
-        build_measure(build, k, &line);
+        draft_measure(build, k, &line);
         polyline_sample(&line, fit->point_count, sample);
         for (uint32_t i = 0; i < fit->point_count; i++) {
             fit->mean[i] = dvec3_add(fit->mean[i], dvec3_of_vec3(sample[i]));
@@ -110,7 +110,7 @@ static void curve_frames(const vec3 *tangents, uint32_t sections, quat *frames)
 }
 
 /* sqrt(2) times the rms distance from the curve, across it: the radius of a disc that is evenly filled. */
-static void fit_radii(const groom_build *build, uint32_t first, uint32_t end, const vec3 *centres, const vec3 *tangents,
+static void fit_radii(const groom_draft *build, uint32_t first, uint32_t end, const vec3 *centres, const vec3 *tangents,
                       float *radii)
 {
     const uint32_t sections = build->groom->info.sections;
@@ -118,7 +118,7 @@ static void fit_radii(const groom_build *build, uint32_t first, uint32_t end, co
     polyline line;
     vec3 sample[AWT_MAX_SECTIONS];
     for (uint32_t k = first; k < end; k++) {
-        build_measure(build, k, &line);
+        draft_measure(build, k, &line);
         polyline_sample(&line, sections, sample);
         for (uint32_t i = 0; i < sections; i++) {
             dvec3 away = dvec3_of_vec3(vec3_sub(sample[i], centres[i]));
@@ -133,7 +133,7 @@ static void fit_radii(const groom_build *build, uint32_t first, uint32_t end, co
 }
 
 /* Finest GC number `w` of its level. */
-static void fit_finest(groom_build *build, uint32_t w)
+static void fit_finest(groom_draft *build, uint32_t w)
 {
     awt_groom *groom = build->groom;
     const uint32_t sections = groom->info.sections;
@@ -175,13 +175,13 @@ static void fit_super_section(awt_groom *groom, uint32_t g, uint32_t i)
     groom->rest_radius[node] = radius;
 }
 
-void fit_wisps(groom_build *build)
+void fit_wisps(groom_draft *build)
 {
     awt_groom *groom = build->groom;
     const uint32_t finest = groom->info.wisp_count[groom->info.levels - 1];
     for (uint32_t w = 0; w < finest; w++) {
         if (w % 64 == 0) {
-            build_report(build, 0.4 + 0.3 * w / finest);
+            draft_report(build, 0.4 + 0.3 * w / finest);
         }
         fit_finest(build, w);
     }

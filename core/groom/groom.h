@@ -44,4 +44,16 @@ static inline uint32_t groom_finest_first(const awt_groom *groom)
     return groom->level_first[groom->info.levels - 1];
 }
 
+/* The GCs one level below GCs lo .. hi-1 (contiguous). False: those are the finest. */
+static inline bool groom_descend(const awt_groom *groom, uint32_t *lo, uint32_t *hi)
+{
+    if (groom->gc_sub_count[*lo] == 0) {
+        return false;
+    }
+    uint32_t last = *hi - 1;
+    *lo = groom->gc_sub_first[*lo];
+    *hi = groom->gc_sub_first[last] + groom->gc_sub_count[last];
+    return true;
+}
+
 #endif

@@ -1,7 +1,7 @@
 /* hierarchy.c: strands into trees of wisps (AWT §2.1): clustered by root place and shape into the top-level GCs, each
  * of them into sub-GCs, level by level. The strands of a GC stay together at every further level, so each GC is a run
  * of strands, sub-GCs are contiguous, and numbers follow from the order. */
-#include "groom/build.h"
+#include "groom/draft.h"
 
 #include <string.h>
 
@@ -9,12 +9,12 @@
  * differ most in length. */
 static const float feature_weight[4] = {1.6f, 1.0f, 0.7f, 0.4f};
 
-static void describe_strands(groom_build *build)
+static void describe_strands(groom_draft *build)
 {
     polyline line;
     for (uint32_t s = 0; s < build->groom->info.strand_count; s++) {
         build->clusters.order[s] = s;
-        build_measure(build, s, &line);
+        draft_measure(build, s, &line);
         vec3 third[4];
         polyline_sample(&line, 4, third);
         float *features = build->features + (size_t)s * CLUSTER_FEATURES;
@@ -27,7 +27,7 @@ static void describe_strands(groom_build *build)
 }
 
 /* Where the strands of each GC of a level begin, and the tree of each. */
-static void number_level(groom_build *build, uint32_t level)
+static void number_level(groom_draft *build, uint32_t level)
 {
     awt_groom *groom = build->groom;
     uint32_t strand = 0;
@@ -38,7 +38,7 @@ static void number_level(groom_build *build, uint32_t level)
     }
 }
 
-static void build_top_level(groom_build *build)
+static void build_top_level(groom_draft *build)
 {
     awt_groom *groom = build->groom;
     cluster_split(&build->clusters, 0, groom->info.strand_count, groom->info.wisp_count[0], groom->gc_strand_count);
@@ -49,7 +49,7 @@ static void build_top_level(groom_build *build)
 }
 
 /* Sub-GCs are shared out by strand count; each gets at least one strand. */
-static void refine_level(groom_build *build, uint32_t level)
+static void refine_level(groom_draft *build, uint32_t level)
 {
     awt_groom *groom = build->groom;
     const uint32_t first = groom->level_first[level], end = groom->level_first[level + 1];
@@ -67,19 +67,19 @@ static void refine_level(groom_build *build, uint32_t level)
     number_level(build, level + 1);
 }
 
-void hierarchy_build(groom_build *build)
+void hierarchy_build(groom_draft *build)
 {
     awt_groom *groom = build->groom;
-    build_report(build, 0.0);
+    draft_report(build, 0.0);
     describe_strands(build);
-    build_report(build, 0.1);
+    draft_report(build, 0.1);
     build_top_level(build);
     for (uint32_t level = 0; level + 1 < groom->info.levels; level++) {
-        build_report(build, 0.2 + 0.2 * level / groom->info.levels);
+        draft_report(build, 0.2 + 0.2 * level / groom->info.levels);
         refine_level(build, level);
     }
     const uint32_t finest = groom->info.wisp_count[groom->info.levels - 1];
     memcpy(groom->gc_strand_first, build->gc_first + groom_finest_first(groom), finest * sizeof(uint32_t));
     groom->gc_strand_first[finest] = groom->info.strand_count;
-    build_report(build, 0.4);
+    draft_report(build, 0.4);
 }

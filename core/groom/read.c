@@ -1,9 +1,9 @@
 /* read.c: a strand file in any format awtd reads, to polylines.
  *
- * A format's reader checks the header and says where the points lie (read.h). From there on all formats are one:
+ * A format's reader checks the header and says where the points lie (formats.h). From there on all formats are one:
  * every coordinate is checked, strands without length are left out and counted, and only then is memory taken, for
  * exactly what is kept. Sources: DATA.md. */
-#include "groom/read.h"
+#include "groom/formats.h"
 
 #include "base/bytes.h"
 #include "base/error.h"
@@ -11,23 +11,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
-
-awt_status read_check_counts(const char *format, uint32_t strands, uint64_t points, awt_error *error)
-{
-    if (strands == 0 || points == 0) {
-        return error_set(error, AWT_NO_STRANDS, "the %s file announces %" PRIu32 " strands and %" PRIu64 " points",
-                         format, strands, points);
-    }
-    if (strands > AWT_MAX_STRANDS) {
-        return error_set(error, AWT_LIMIT, "the %s file announces %" PRIu32 " strands; the limit is %d", format,
-                         strands, AWT_MAX_STRANDS);
-    }
-    if (points > AWT_MAX_POINTS) {
-        return error_set(error, AWT_LIMIT, "the %s file announces %" PRIu64 " points; the limit is %d", format, points,
-                         AWT_MAX_POINTS);
-    }
-    return AWT_OK;
-}
 
 static uint32_t strand_points(const read_layout *layout, uint32_t strand)
 {

@@ -2,7 +2,7 @@
  *
  * The points array is required; without a segments array every strand has the default number of segments. A strand
  * has one point more than segments, and they must add up to the points announced. Source: DATA.md. */
-#include "groom/read.h"
+#include "groom/formats.h"
 
 #include "base/bytes.h"
 #include "base/error.h"

@@ -3,7 +3,7 @@
  * There is no magic number: the file begins with its version as a float, and only those two values are taken. Of
  * the arrays only the positions are read, so only their offset must make sense. Of 3.0 the guides are read; its
  * follow hairs are not in the file. Source: DATA.md. */
-#include "groom/read.h"
+#include "groom/formats.h"
 
 #include "base/bytes.h"
 #include "base/error.h"

@@ -88,7 +88,7 @@ static void merge_apply(awt_forest *f, uint32_t g, const fusion *super)
     f->acceleration[node] = super->acceleration;
     f->radius[node] = super->radius;
     for (uint32_t s = groom->gc_sub_first[g]; s < groom->gc_sub_first[g] + groom->gc_sub_count[g]; s++) {
-        f->offset[s * sections + i] = forest_to_head(f, vec3_sub(f->position[s * sections + i], super->position));
+        f->offset[s * sections + i] = state_to_head(f, vec3_sub(f->position[s * sections + i], super->position));
     }
 }
 
@@ -161,7 +161,7 @@ adapt_counts adapt_tree(awt_forest *f, uint32_t t)
                 counts.splits++;
             }
         }
-    } while (tree_descend(groom, &lo, &hi));
+    } while (groom_descend(groom, &lo, &hi));
     if (baked) {
         adapt_rebase(f, t);
     }

@@ -2,7 +2,7 @@
 #ifndef SIM_ADAPT_H
 #define SIM_ADAPT_H
 
-#include "sim/forest.h"
+#include "sim/state.h"
 
 typedef struct adapt_counts {
     uint32_t splits, merges;

@@ -2,6 +2,7 @@
  * ranges can blow up. */
 #include "sim/dynamics.h"
 
+#include "sim/relax.h"
 #include "sim/style.h"
 
 /* The turn of every segment from rest to now, and its tangent. */
@@ -14,7 +15,7 @@ static void dynamics_turns(awt_forest *f, const tree *t)
         vec3 x = f->position[f->active_node[k]], parent = f->position[f->active_node[f->active_parent[k]]];
         vec3 along = vec3_unit(vec3_sub(x, parent), f->tangent[f->active_parent[k]]);
         f->tangent[k] = along;
-        quat bend = quat_between(f->active_rest_tangent[k], forest_to_head(f, along));
+        quat bend = quat_between(f->active_rest_tangent[k], state_to_head(f, along));
         f->turn[k] = mat3_of_quat(quat_mul(head, bend));
     }
 }

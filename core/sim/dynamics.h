@@ -2,7 +2,7 @@
 #ifndef SIM_DYNAMICS_H
 #define SIM_DYNAMICS_H
 
-#include "sim/forest.h"
+#include "sim/state.h"
 
 /* From the state at the beginning of the sub-step: f->next where the nodes would go without links; the root goes
  * with the head. */
@@ -11,11 +11,5 @@ void dynamics_predict(awt_forest *f, const tree *t, float dt_s);
 /* From f->next after the links: positions, velocities, filtered accelerations, relaxed link lengths. Returns how many
  * nodes the speed limit stopped. */
 uint32_t dynamics_finish(awt_forest *f, const tree *t, float dt_s);
-
-/* Share of the way that a first-order relaxation of time constant tau goes in dt (implicit: never overshoots). */
-static inline float relaxation_share(float dt_s, float tau_s)
-{
-    return dt_s / (tau_s + dt_s);
-}
 
 #endif

@@ -1,8 +1,7 @@
 /* embed.c: see embed.h. */
 #include "sim/embed.h"
 
-#include "sim/dynamics.h"
-#include "sim/tree.h"
+#include "sim/relax.h"
 
 void embed_measure(awt_forest *f, const tree *t)
 {
@@ -33,7 +32,7 @@ static vec3 chord_direction(const awt_forest *f, const tree *t, uint32_t k)
         return f->reference[node];
     }
     vec3 chord = vec3_sub(f->position[node], f->position[f->active_node[f->active_chord[k]]]);
-    return vec3_unit(forest_to_head(f, chord), f->reference[node]);
+    return vec3_unit(state_to_head(f, chord), f->reference[node]);
 }
 
 static quat chord_turn(const awt_forest *f, uint32_t k, vec3 from, vec3 to)
@@ -82,7 +81,7 @@ void embed_bake(awt_forest *f, const tree *t)
         quat turn = embed_turn(f, t, k);
         uint32_t g = f->active_node[k] / sections, i = f->active_node[k] % sections;
         uint32_t lo = g, hi = g + 1;
-        while (tree_descend(groom, &lo, &hi)) {
+        while (groom_descend(groom, &lo, &hi)) {
             for (uint32_t s = lo; s < hi; s++) {
                 f->offset[s * sections + i] = quat_rotate(turn, f->offset[s * sections + i]);
             }
@@ -116,7 +115,7 @@ void embed_relax(awt_forest *f, const tree *t, float dt_s)
         mat3 turned = mat3_of_quat(turn);
         f->radius[node] += (groom->rest_radius[node] - f->radius[node]) * share;
         uint32_t lo = g, hi = g + 1;
-        while (tree_descend(groom, &lo, &hi)) {
+        while (groom_descend(groom, &lo, &hi)) {
             for (uint32_t s = lo; s < hi; s++) {
                 uint32_t n = s * sections + i;
                 vec3 rest = vec3_sub(groom->rest_position[n], groom->rest_position[groom->gc_super[s] * sections + i]);
@@ -155,7 +154,7 @@ void awt_forest_guides(const awt_forest *f, float *centres, float *frames)
         const tree *tr = &f->trees[t];
         for (uint32_t k = tr->first; k < tr->first + tr->count; k++) {
             uint32_t node = f->active_node[k];
-            embed_place(f, node / sections, node % sections, forest_to_head(f, f->position[node]), embed_turn(f, tr, k),
+            embed_place(f, node / sections, node % sections, state_to_head(f, f->position[node]), embed_turn(f, tr, k),
                         (vec3 *)(void *)centres, (quat *)(void *)frames);
         }
     }

@@ -12,7 +12,7 @@
 #ifndef SIM_EMBED_H
 #define SIM_EMBED_H
 
-#include "sim/forest.h"
+#include "sim/state.h"
 
 /* Sets offsets, frames and references of the whole forest to the groom's rest shape. */
 void embed_rest(awt_forest *f);

@@ -1,5 +1,5 @@
 /* forest.c: a forest's life, its inputs and its face to the outside. */
-#include "sim/forest.h"
+#include "sim/state.h"
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -273,7 +273,7 @@ uint64_t awt_forest_hash(const awt_forest *f)
             hash = hash_words(hash, &f->radius[node], 1);
             hash = hash_words(hash, &f->link_length[node], 1);
             uint32_t lo = node / sections, hi = lo + 1;
-            while (tree_descend(groom, &lo, &hi)) {
+            while (groom_descend(groom, &lo, &hi)) {
                 for (uint32_t s = lo; s < hi; s++) {
                     hash = hash_words(hash, &f->offset[s * sections + node % sections], 3);
                 }

@@ -2,7 +2,7 @@
 #ifndef SIM_LINKS_H
 #define SIM_LINKS_H
 
-#include "sim/forest.h"
+#include "sim/state.h"
 
 /* Moves f->next of the tree's nodes, least by mass, so that every link has its target length to first order;
  * params.link_iterations times. The root does not move. */

@@ -2,7 +2,7 @@
 #ifndef SIM_OBSTACLE_H
 #define SIM_OBSTACLE_H
 
-#include "sim/forest.h"
+#include "sim/state.h"
 
 /* The default head and body for this groom: of its head's radius, and without the body where the groom grows beyond the
  * head (a mane, fur): all roots ride the head, so the body would move through its own hair. Returns how many. */

@@ -2,7 +2,7 @@
 #ifndef SIM_STEP_H
 #define SIM_STEP_H
 
-#include "sim/forest.h"
+#include "sim/state.h"
 
 /* Brings the forest from its time to `end_us`, which is `dt_s` later; `sample_us` is the same instant as a real
  * number. Adds what happened to *stats. */

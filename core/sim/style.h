@@ -2,7 +2,7 @@
 #ifndef SIM_STYLE_H
 #define SIM_STYLE_H
 
-#include "sim/forest.h"
+#include "sim/state.h"
 
 /* From the velocities in f->next (the root's is the head's): what a sub-step of the style springs and their dampers
  * makes of them, in place. Needs f->turn and f->tangent. */

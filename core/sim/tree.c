@@ -9,7 +9,7 @@
 uint32_t tree_capacity(const awt_groom *groom, uint32_t t)
 {
     uint32_t lo = t, hi = t + 1;
-    while (tree_descend(groom, &lo, &hi)) {
+    while (groom_descend(groom, &lo, &hi)) {
     }
     return 1 + (hi - lo) * (groom->info.sections - 1);
 }

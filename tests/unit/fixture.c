@@ -2,7 +2,7 @@
 #include "fixture.h"
 
 #include "base/assert.h"
-#include "sim/forest.h"
+#include "sim/state.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #include "check.h"
 #include "fixture.h"
 
-#include "sim/forest.h"
+#include "sim/state.h"
 
 #include <math.h>
 #include <pthread.h>

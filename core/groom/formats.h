@@ -1,7 +1,7 @@
-/* read.h: between read.c and the formats it reads. A format turns a hostile header into a read_layout whose every
+/* formats.h: between read.c and the formats it reads. A format turns a hostile header into a read_layout whose every
  * byte is known to lie inside the file; it allocates nothing and looks at no point. */
-#ifndef GROOM_READ_H
-#define GROOM_READ_H
+#ifndef GROOM_FORMATS_H
+#define GROOM_FORMATS_H
 
 #include "awt.h"
 

@@ -1,13 +1,13 @@
-/* build.h: what the stages of awt_groom_build share. Each stage fills its part of the groom, in this order:
+/* draft.h: what the stages of awt_groom_build share. Each stage fills its part of the groom, in this order:
  * hierarchy (which strands make which wisp), fit (curves, radii and frames of the wisps), bind (strands to wisps). */
-#ifndef GROOM_BUILD_H
-#define GROOM_BUILD_H
+#ifndef GROOM_DRAFT_H
+#define GROOM_DRAFT_H
 
 #include "groom/cluster.h"
 #include "groom/groom.h"
 #include "groom/polyline.h"
 
-typedef struct groom_build {
+typedef struct groom_draft {
     awt_groom *groom; /* sizes stand in its info */
     const awt_strands *strands;
 
@@ -21,9 +21,9 @@ typedef struct groom_build {
 
     void (*progress)(void *context, double share);
     void *context;
-} groom_build;
+} groom_draft;
 
-static inline void build_report(const groom_build *build, double share)
+static inline void draft_report(const groom_draft *build, double share)
 {
     if (build->progress) {
         build->progress(build->context, share);
@@ -31,20 +31,20 @@ static inline void build_report(const groom_build *build, double share)
 }
 
 /* Measures strand k of the groom's order. */
-static inline void build_measure(const groom_build *build, uint32_t k, polyline *line)
+static inline void draft_measure(const groom_draft *build, uint32_t k, polyline *line)
 {
     const awt_strands *strands = build->strands;
     uint32_t s = build->clusters.order[k], first = strands->first_point[s];
     polyline_measure(line, strands->positions + 3 * (size_t)first, strands->first_point[s + 1] - first);
 }
 
-#define BUILD_STRAIN 1.25 /* what a moving strand may be longer than at rest (CONTRACT.md, Geometry) */
+#define DRAFT_STRAIN 1.25 /* what a moving strand may be longer than at rest (CONTRACT.md, Geometry) */
 
 /* Fills gc_super .. gc_strand_count, gc_strand_first and the order of the strands. Reports 0 .. 0.4. */
-void hierarchy_build(groom_build *build);
+void hierarchy_build(groom_draft *build);
 /* Fills rest_position, rest_radius and rest_frame. Reports 0.4 .. 0.7. */
-void fit_wisps(groom_build *build);
+void fit_wisps(groom_draft *build);
 /* Fills strand_station, strand_offset, length_m and reach_m. Reports 0.7 .. 1. */
-void bind_strands(groom_build *build);
+void bind_strands(groom_draft *build);
 
 #endif

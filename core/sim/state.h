@@ -1,4 +1,4 @@
-/* forest.h: the moving state of one head of hair, and nothing that acts on it.
+/* state.h: the moving state of one head of hair, and nothing that acts on it.
  *
  * Positions are relative to the head's centre, along the world's axes; velocities and accelerations are those of this
  * moving frame, and the frame's own change of velocity enters as an inertial force (dynamics.c). The numbers
@@ -9,8 +9,8 @@
  * Node (g, i) has index g * sections + i, as in the groom. Which arrays are meaningful for which nodes: active nodes
  * have position, velocity, acceleration, radius, link and reference; nodes below an active one have an offset;
  * finest nodes have a frame always. */
-#ifndef SIM_FOREST_H
-#define SIM_FOREST_H
+#ifndef SIM_STATE_H
+#define SIM_STATE_H
 
 #include "base/arena.h"
 #include "base/sym3.h"
@@ -92,7 +92,7 @@ struct awt_forest {
     vec3 *style_push;
 };
 
-static inline vec3 forest_to_head(const awt_forest *f, vec3 v)
+static inline vec3 state_to_head(const awt_forest *f, vec3 v)
 {
     return mat3_apply_transposed(f->head, v);
 }
