@@ -33,6 +33,7 @@ SRC_clients := $(filter-out clients/awtctl%,$(wildcard clients/*.c clients/*/*.c
 SRC_awtctl := $(wildcard clients/awtctl*.c)
 SRC_unit := tests/main.c $(wildcard tests/unit/*.c tests/e2e/*.c)
 SRC_bench := $(wildcard tests/bench/*.c)
+HEADERS := $(wildcard $(foreach r,core proto server clients tests,$(r)/*.h $(r)/*/*.h))
 SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_unit) $(SRC_bench)
 
 objects = $(patsubst %,$(B)/obj/%.o,$(1))
@@ -125,9 +126,9 @@ bench: programs
 	$(B)/awt-bench
 
 format:
-	clang-format -i $(SRC_ALL) $(wildcard */*.h */*/*.h)
+	$(Q)clang-format -i $(SRC_ALL) $(HEADERS)
 lint: all
-	clang-format --dry-run --Werror $(SRC_ALL) $(wildcard */*.h */*/*.h)
+	$(Q)clang-format --dry-run --Werror $(SRC_ALL) $(HEADERS)
 
 prefix ?= /usr/local
 install: programs
