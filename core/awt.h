@@ -132,6 +132,10 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
     X(wind_y, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                   \
     X(wind_z, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                   \
     X(speed_limit, 20.0f, 0.1f, 1000.0f, "m/s", "nodes never move faster than this relative to the head")           \
+    X(links, 0.0f, 0.0f, 1.0f, "", "AWT 2.3: 0 rigid links, 1 viscous springs")                                     \
+    X(link_omega, 400.0f, 1.0f, 2000.0f, "rad/s", "spring links: frequency under the mass that hangs on each")      \
+    X(link_damping, 0.8f, 0.0f, 10.0f, "", "spring links: damping ratio")                                           \
+    X(strain_limit, 0.2f, 0.0f, 1.0f, "", "spring links: never stretched or shortened by more than this share")     \
     X(link_iterations, 2.0f, 1.0f, 16.0f, "", "AWT 2.3: rounds of the exact rigid-link projection in a step")
 
 typedef struct awt_params {
@@ -188,7 +192,7 @@ typedef struct awt_groom awt_groom;
 
 typedef struct awt_groom_def {
     uint32_t levels;            /* L, 1 .. AWT_MAX_LEVELS */
-    uint32_t sections;          /* M, 3 .. AWT_MAX_SECTIONS; 0: chosen from the strands */
+    uint32_t sections;          /* M, 2 .. AWT_MAX_SECTIONS; 0: chosen from the strands */
     uint32_t finest_wisps;      /* 0: chosen from the number of strands */
     uint32_t top_wisps;         /* 0: chosen from finest_wisps and levels */
     uint32_t points_per_strand; /* of the strands that come out; 0: as many as the strands have */

@@ -61,6 +61,6 @@ if [ "$1" = test ] && ! cmp -s tests/node/package-lock.json tests/node/node_modu
         [ -d tests/node/node_modules ] || echo "tests/node/node_modules is missing: the glTF checks will be skipped" >&2
     else
         echo "installing npm packages for the glTF checks (tests/node/package-lock.json)"
-        (cd tests/node && npm ci --no-audit --no-fund --silent && cp package-lock.json node_modules/.installed)
+        (cd tests/node && npm ci --no-audit --no-fund --loglevel=error && cp package-lock.json node_modules/.installed)
     fi
 fi

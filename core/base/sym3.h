@@ -13,6 +13,11 @@ static inline sym3 sym3_of_scalar(float s)
     return (sym3){s, s, s, 0, 0, 0};
 }
 
+static inline sym3 sym3_sum(sym3 a, sym3 b)
+{
+    return (sym3){a.xx + b.xx, a.yy + b.yy, a.zz + b.zz, a.xy + b.xy, a.xz + b.xz, a.yz + b.yz};
+}
+
 /* a + s v v^T */
 static inline sym3 sym3_add_outer(sym3 a, vec3 v, float s)
 {

@@ -63,8 +63,8 @@ static awt_status check_def(const awt_groom_def *def, awt_error *error)
         return error_set(error, AWT_BAD_VALUE, "%lu levels; a groom has 1 to %d", (unsigned long)def->levels,
                          AWT_MAX_LEVELS);
     }
-    if (def->sections != 0 && (def->sections < 3 || def->sections > AWT_MAX_SECTIONS)) {
-        return error_set(error, AWT_BAD_VALUE, "%lu sections; a wisp has 3 to %d, or 0 for a fitting number",
+    if (def->sections != 0 && (def->sections < 2 || def->sections > AWT_MAX_SECTIONS)) {
+        return error_set(error, AWT_BAD_VALUE, "%lu sections; a wisp has 2 to %d, or 0 for a fitting number",
                          (unsigned long)def->sections, AWT_MAX_SECTIONS);
     }
     if (def->points_per_strand == 1 || def->points_per_strand > AWT_MAX_POINTS_PER_STRAND) {

@@ -3,7 +3,7 @@
 #include "sim/dynamics.h"
 
 #include "sim/relax.h"
-#include "sim/style.h"
+#include "sim/joint.h"
 
 /* The turn of every segment from rest to now, and its tangent. */
 static void dynamics_turns(awt_forest *f, const tree *t)
@@ -31,18 +31,23 @@ static void dynamics_begin(awt_forest *f, const tree *t, float dt_s)
     }
 }
 
-/* Gravity, the style's share of it, the moving frame's inertia, and drag; then velocities become positions. */
-static void dynamics_drift(awt_forest *f, const tree *t, float dt_s)
+/* Adds gravity, the style's share of it, the moving frame's inertia, and drag. */
+static void dynamics_load(awt_forest *f, const tree *t, float dt_s)
 {
     const awt_params *p = &f->params;
     vec3 gravity = {p->gravity_x, p->gravity_y, p->gravity_z}, wind = {p->wind_x, p->wind_y, p->wind_z};
     vec3 outside = vec3_mad(vec3_sub(gravity, f->frame_acceleration), wind, p->drag);
     float slowing = 1.0f / (1.0f + dt_s * p->drag);
-    f->next[t->first] = vec3_mad(f->position[f->active_node[t->first]], f->next[t->first], dt_s);
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
         vec3 preload = mat3_apply(f->head, f->active_preload[k]);
-        vec3 velocity = vec3_scale(vec3_mad(f->next[k], vec3_add(outside, preload), dt_s), slowing);
-        f->next[k] = vec3_mad(f->position[f->active_node[k]], velocity, dt_s);
+        f->next[k] = vec3_scale(vec3_mad(f->next[k], vec3_add(outside, preload), dt_s), slowing);
+    }
+}
+
+static void dynamics_drift(awt_forest *f, const tree *t, float dt_s)
+{
+    for (uint32_t k = t->first; k < t->first + t->count; k++) {
+        f->next[k] = vec3_mad(f->position[f->active_node[k]], f->next[k], dt_s);
     }
 }
 
@@ -50,7 +55,13 @@ void dynamics_predict(awt_forest *f, const tree *t, float dt_s)
 {
     dynamics_turns(f, t);
     dynamics_begin(f, t, dt_s);
-    style_resolve(f, t, dt_s); /* first: it must not see velocities that the links are about to take away */
+    if (joint_links_are_springs(f)) { /* springs have to see the load that they carry */
+        dynamics_load(f, t, dt_s);
+        joint_resolve(f, t, dt_s);
+    } else { /* and must not see a load that rigid links are about to take away */
+        joint_resolve(f, t, dt_s);
+        dynamics_load(f, t, dt_s);
+    }
     dynamics_drift(f, t, dt_s);
 }
 

@@ -56,6 +56,7 @@ static void forest_lay_out(awt_forest *f, arena *a)
     f->active_style = ARENA_PUSH(a, vec3, slots);
     f->active_preload = ARENA_PUSH(a, vec3, slots);
     f->active_stiffness = ARENA_PUSH(a, float, slots);
+    f->active_hung_mass = ARENA_PUSH(a, float, slots);
     f->active_rest_length = ARENA_PUSH(a, float, slots);
     f->active_lead = ARENA_PUSH(a, float, slots);
     f->slot_of_node = ARENA_PUSH(a, uint32_t, nodes);
@@ -68,10 +69,10 @@ static void forest_lay_out(awt_forest *f, arena *a)
     f->link_carry = ARENA_PUSH(a, vec3, slots);
     f->link_gain = ARENA_PUSH(a, float, slots);
     f->link_gap = ARENA_PUSH(a, float, slots);
-    f->style_mass = ARENA_PUSH(a, sym3, slots);
-    f->style_up = ARENA_PUSH(a, mat3, slots);
-    f->style_far = ARENA_PUSH(a, mat3, slots);
-    f->style_push = ARENA_PUSH(a, vec3, slots);
+    f->joint_mass = ARENA_PUSH(a, sym3, slots);
+    f->joint_up = ARENA_PUSH(a, mat3, slots);
+    f->joint_far = ARENA_PUSH(a, mat3, slots);
+    f->joint_push = ARENA_PUSH(a, vec3, slots);
 }
 
 /* Only the coarsest nodes active (§2.3), everything as the groom rests, at the head's pose. */

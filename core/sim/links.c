@@ -83,14 +83,9 @@ void links_measure(awt_forest *f, const tree *t)
     const awt_params *p = &f->params;
     const float step_s = (float)AWT_STEP_US * 1e-6f;
     float gravity = vec3_length(vec3_make(p->gravity_x, p->gravity_y, p->gravity_z));
-    float *hung_mass = f->link_gain; /* working memory, free between steps */
-    for (uint32_t k = t->first; k < t->first + t->count; k++) {
-        hung_mass[k] = f->active_mass[k];
-    }
-    for (uint32_t k = t->first + t->count - 1; k > t->first; k--) {
-        hung_mass[f->active_parent[k]] += hung_mass[k];
-        float stiffness =
-            step_s * step_s * gravity * hung_mass[k] / (f->active_mass[k] * (f->active_rest_length[k] + 1e-6f));
+    for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
+        float stiffness = step_s * step_s * gravity * f->active_hung_mass[k] /
+                          (f->active_mass[k] * (f->active_rest_length[k] + 1e-6f));
         float lead = (stiffness - LINK_LEAD_BEGIN) / (LINK_LEAD_WHOLE - LINK_LEAD_BEGIN);
         f->active_lead[k] = lead < 0.0f ? 0.0f : lead > 1.0f ? 1.0f : lead;
     }

@@ -8,7 +8,8 @@
  * params.link_iterations times. The root does not move. */
 void links_project(awt_forest *f, const tree *t);
 
-/* Sets how far each slot's link turns towards its predicted direction (links.c); when the slots have been made anew. */
+/* Sets how far each slot's link turns towards its predicted direction (links.c); when the slots have been made anew,
+ * after joint_measure. */
 void links_measure(awt_forest *f, const tree *t);
 
 #endif

@@ -5,6 +5,7 @@
 #include "sim/obstacle.h"
 
 #include "base/error.h"
+#include "sim/joint.h"
 
 enum { COLLIDER_DEFAULTS = 6 };
 
@@ -197,13 +198,24 @@ static bool obstacle_keep_out(awt_forest *f, uint32_t k, const obstacle *o, vec3
     return true;
 }
 
+/* The length that slot k's link takes: a rigid one its target, a spring its own within the strain limit. */
+static float link_length_allowed(const awt_forest *f, uint32_t k, float length)
+{
+    float target = f->link_length[f->active_node[k]];
+    if (!joint_links_are_springs(f)) {
+        return target;
+    }
+    float least = target * (1.0f - f->params.strain_limit), greatest = target * (1.0f + f->params.strain_limit);
+    return length < least ? least : length > greatest ? greatest : length;
+}
+
 uint32_t obstacle_settle(awt_forest *f, const tree *t)
 {
     uint32_t unreached = 0;
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
         vec3 parent = f->next[f->active_parent[k]];
-        float length = f->link_length[f->active_node[k]];
-        vec3 along = vec3_unit(vec3_sub(f->next[k], parent), f->tangent[k]);
+        vec3 link = vec3_sub(f->next[k], parent), along = vec3_unit(link, f->tangent[k]);
+        float length = link_length_allowed(f, k, vec3_length(link));
         f->next[k] = vec3_mad(parent, along, length);
         f->touching[k] = false;
         bool reached = true;

@@ -21,6 +21,8 @@
  * arrays, by cross-section, so that parents come before children. Slot `first` is the root. */
 typedef struct tree {
     uint32_t first, count;
+    bool asleep;   /* nothing of it moves relative to the head (rest.c) */
+    float quiet_s; /* for so long it has hardly moved */
 } tree;
 
 /* Where an obstacle is in this sub-step, relative to the head's centre, and how it moves there. */
@@ -75,6 +77,7 @@ struct awt_forest {
     vec3 *active_style;                    /* head frame: from its parent to where the style spring holds it */
     vec3 *active_preload;                  /* head frame, m/s2: what of gravity the style carries at rest */
     float *active_stiffness;               /* of the style spring, times style_omega^2; in mass units */
+    float *active_hung_mass;               /* of the node and all below it; in mass units */
     float *active_rest_length;
     float *active_lead;     /* links.c */
     uint32_t *slot_of_node; /* [nodes]; of active nodes */
@@ -87,9 +90,9 @@ struct awt_forest {
     sym3 *link_mass; /* links.c */
     vec3 *link_push, *link_carry;
     float *link_gain, *link_gap;
-    sym3 *style_mass; /* style.c */
-    mat3 *style_up, *style_far;
-    vec3 *style_push;
+    sym3 *joint_mass; /* joint.c */
+    mat3 *joint_up, *joint_far;
+    vec3 *joint_push;
 };
 
 static inline vec3 state_to_head(const awt_forest *f, vec3 v)

@@ -4,6 +4,7 @@
 #include "sim/adapt.h"
 #include "sim/dynamics.h"
 #include "sim/embed.h"
+#include "sim/joint.h"
 #include "sim/links.h"
 #include "sim/obstacle.h"
 
@@ -56,11 +57,11 @@ static void step_pose(awt_forest *f, double sample_us, float dt_s)
  * are floats that step by 0.03 um. */
 static float step_link_error(const awt_forest *f, const tree *t)
 {
-    float worst = 0.0f;
+    float worst = 0.0f, slack = joint_links_are_springs(f) ? f->params.strain_limit : 0.0f;
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
         float target = f->link_length[f->active_node[k]];
         float length = vec3_distance(f->next[k], f->next[f->active_parent[k]]);
-        float error = fabsf(length - target) / (target > 0.005f ? target : 0.005f);
+        float error = fabsf(length - target) / (target > 0.005f ? target : 0.005f) - slack;
         worst = error > worst ? error : worst;
     }
     return worst;
@@ -70,7 +71,9 @@ static void step_tree(awt_forest *f, uint32_t index, float dt_s, awt_step_stats 
 {
     const tree *t = &f->trees[index];
     dynamics_predict(f, t, dt_s);
-    links_project(f, t);
+    if (!joint_links_are_springs(f)) {
+        links_project(f, t);
+    }
     stats->unreached_contacts += obstacle_settle(f, t);
     float error = step_link_error(f, t);
     stats->link_error = error > stats->link_error ? error : stats->link_error;

@@ -4,7 +4,7 @@
 #include "base/assert.h"
 #include "sim/embed.h"
 #include "sim/links.h"
-#include "sim/style.h"
+#include "sim/joint.h"
 
 uint32_t tree_capacity(const awt_groom *groom, uint32_t t)
 {
@@ -65,7 +65,7 @@ void tree_rebuild(awt_forest *f, uint32_t t)
         tree_add_section(f, tr, t, t + 1, i);
     }
     ASSERT(tr->count <= tree_capacity(f->groom, t));
+    joint_measure(f, tr);
     links_measure(f, tr);
-    style_measure(f, tr);
     embed_measure(f, tr);
 }

@@ -130,7 +130,7 @@ TEST(groom_refuses_definitions_outside_the_limits)
     check_refused(&strands, &def, AWT_BAD_VALUE);
     def.levels = AWT_MAX_LEVELS + 1;
     check_refused(&strands, &def, AWT_BAD_VALUE);
-    def = good, def.sections = 2;
+    def = good, def.sections = 1;
     check_refused(&strands, &def, AWT_BAD_VALUE);
     def.sections = AWT_MAX_SECTIONS + 1;
     check_refused(&strands, &def, AWT_BAD_VALUE);
