@@ -302,6 +302,7 @@ typedef struct awt_step_stats {
     int64_t time_us;
     uint32_t steps;
     uint32_t active_nodes;       /* of all trees, roots included */
+    uint32_t asleep_trees;       /* trees at rest that cost nothing (they wake when something moves) */
     uint32_t splits, merges;     /* nodes split into their sub-nodes, sets of sub-nodes merged */
     uint32_t unreached_contacts; /* nodes that their link kept inside an obstacle (AWT 4.3, PHYSICS.md 7) */
     uint32_t clamped_speeds;

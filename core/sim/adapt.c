@@ -6,6 +6,7 @@
 #include "sim/adapt.h"
 
 #include "sim/embed.h"
+#include "sim/rest.h"
 #include "sim/tree.h"
 
 /* The super-node that stands for the sub-nodes of (g, i): centre of mass, mean velocity and acceleration by mass,
@@ -67,10 +68,13 @@ static bool merge_due(const awt_forest *f, uint32_t g, fusion *out)
         }
     }
     *out = adapt_fuse(f, g, i);
+    /* What still lies apart when nothing moves any more, an obstacle holds there; it merges too, and its offsets relax.
+     */
+    bool settled = rest_is_settled(&f->trees[groom->gc_tree[g]]);
     float reach = groom->rest_radius[g * sections + i] * f->params.merge_slack;
     for (uint32_t s = first; s < end; s++) {
         uint32_t node = s * sections + i;
-        if (vec3_distance(f->position[node], out->position) > reach ||
+        if ((!settled && vec3_distance(f->position[node], out->position) > reach) ||
             vec3_distance(f->velocity[node], out->velocity) > f->params.merge_velocity) {
             return false;
         }

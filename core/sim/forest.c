@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "sim/embed.h"
 #include "sim/obstacle.h"
+#include "sim/rest.h"
 #include "sim/step.h"
 #include "sim/tree.h"
 
@@ -151,6 +152,7 @@ awt_status awt_forest_create(const awt_groom *groom, const awt_forest_def *def, 
     }
     f->time_us = def->start.time_us;
     track_sample(&f->track, (double)f->time_us, f->pose);
+    f->still_orientation = f->pose[TRACK_HEAD].orientation;
     step_orient(f);
     forest_rest(f);
     *out = f;
@@ -180,6 +182,7 @@ awt_status awt_forest_set_params(awt_forest *f, const awt_params *params, awt_er
         return status;
     }
     f->params = *params;
+    rest_wake_all(f);
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
         tree_rebuild(f, t); /* the style's targets depend on them */
     }
@@ -198,6 +201,7 @@ static void forest_measure(const awt_forest *f, awt_step_stats *stats)
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
         const tree *tr = &f->trees[t];
         stats->active_nodes += tr->count;
+        stats->asleep_trees += tr->asleep;
         for (uint32_t k = tr->first; k < tr->first + tr->count; k++) {
             vec3 v = f->velocity[f->active_node[k]];
             energy += 0.5 * (double)f->active_mass[k] * (double)vec3_dot(v, v);
@@ -265,6 +269,7 @@ uint64_t awt_forest_hash(const awt_forest *f)
         hash = hash_words(hash, &f->pose[k].orientation, sizeof f->pose[k].orientation / 4);
     }
     for (uint32_t t = 0; t < groom->info.wisp_count[0]; t++) {
+        hash = hash_words(hash, &f->trees[t].quiet_s, 1);
         for (uint32_t k = f->trees[t].first; k < f->trees[t].first + f->trees[t].count; k++) {
             uint32_t node = f->active_node[k];
             hash = hash_words(hash, &f->position[node], 3);

@@ -51,6 +51,7 @@ struct awt_forest {
     dvec3 frame_velocity;         /* of the head's centre during the last sub-step */
     vec3 frame_acceleration;
     obstacle obstacles[AWT_MAX_COLLIDERS];
+    dquat still_orientation; /* of the head, when the world was last not still (rest.c) */
 
     /* the AWTs; per GC, [gc_count] */
     uint32_t *first_split; /* node (g, i) is active iff first_split[super(g)] <= i < first_split[g] */

@@ -1,4 +1,4 @@
-/* step.c: one sub-step, as PHYSICS.md lists it: poses, forces, links, obstacles, velocities, adaptation. */
+/* step.c: one sub-step, as PHYSICS.md lists it: poses, forces, links, obstacles, velocities, adaptation, rest. */
 #include "sim/step.h"
 
 #include "sim/adapt.h"
@@ -7,6 +7,7 @@
 #include "sim/joint.h"
 #include "sim/links.h"
 #include "sim/obstacle.h"
+#include "sim/rest.h"
 
 #include <string.h>
 
@@ -23,27 +24,21 @@ static void step_carry(awt_forest *f, dquat from, dquat to)
 {
     mat3 turn = mat3_of_quat(quat_of_dquat(dquat_unit(dquat_mul(to, dquat_conjugate(from)))));
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
-        for (uint32_t k = f->trees[t].first; k < f->trees[t].first + f->trees[t].count; k++) {
-            uint32_t node = f->active_node[k];
-            f->position[node] = mat3_apply(turn, f->position[node]);
-            f->velocity[node] = mat3_apply(turn, f->velocity[node]);
-            f->acceleration[node] = mat3_apply(turn, f->acceleration[node]);
-        }
+        rest_carry(f, &f->trees[t], turn);
     }
 }
 
 /* Poses at the end of the sub-step, and what their change means in the moving frame. */
-static void step_pose(awt_forest *f, double sample_us, float dt_s)
+static void step_pose(awt_forest *f, double sample_us, float dt_s, track_pose before[TRACK_COUNT])
 {
-    track_pose before[TRACK_COUNT];
-    memcpy(before, f->pose, sizeof before);
+    memcpy(before, f->pose, sizeof f->pose);
     bool teleported = track_sample(&f->track, sample_us, f->pose);
     const track_pose *head = &f->pose[TRACK_HEAD], *head_before = &before[TRACK_HEAD];
     dvec3 velocity = dvec3_scale(dvec3_sub(head->position, head_before->position), 1.0 / (double)dt_s);
     dvec3 change = dvec3_sub(velocity, f->frame_velocity);
     if (teleported || dvec3_length(change) > STEP_TELEPORT_M_S) {
         step_carry(f, head_before->orientation, head->orientation);
-        memcpy(before, f->pose, sizeof before);
+        memcpy(before, f->pose, sizeof f->pose);
         velocity = change = (dvec3){0, 0, 0};
     }
     f->frame_velocity = velocity;
@@ -84,15 +79,19 @@ static void step_tree(awt_forest *f, uint32_t index, float dt_s, awt_step_stats 
 void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_step_stats *stats)
 {
     const uint32_t trees = f->groom->info.wisp_count[0];
-    step_pose(f, sample_us, dt_s);
-    for (uint32_t t = 0; t < trees; t++) {
-        step_tree(f, t, dt_s, stats);
-    }
+    track_pose before[TRACK_COUNT];
+    step_pose(f, sample_us, dt_s, before);
+    bool world_is_still = rest_world_is_still(f);
     f->time_us = end_us;
     for (uint32_t t = 0; t < trees; t++) {
+        if (rest_sleeps_on(f, &f->trees[t], world_is_still, &before[TRACK_HEAD], dt_s)) {
+            continue;
+        }
+        step_tree(f, t, dt_s, stats);
         adapt_counts counts = adapt_tree(f, t);
         stats->splits += counts.splits;
         stats->merges += counts.merges;
+        rest_observe(f, &f->trees[t], world_is_still, dt_s);
     }
     stats->steps++;
 }

@@ -1,0 +1,97 @@
+/* rest.c: see rest.h.
+ *
+ * A tree is quiet while no node of it moves faster than REST_SPEED against the head and the world is still; when it has
+ * been quiet for half a second and is merged to its coarsest nodes, it sleeps: its velocities become exactly zero and
+ * only the head carries it. Its offsets go on relaxing for a while, so that it sleeps in style. */
+#include "sim/rest.h"
+
+#include "sim/embed.h"
+
+#define REST_SPEED_M_S 0.01f
+#define REST_HEAD_SPIN 0.02f        /* rad/s */
+#define REST_HEAD_ACCELERATION 0.1f /* m/s2 */
+#define REST_OBSTACLE_SPEED_M_S 0.002f
+/* 1 - |q . q0| of a head that has turned by 0.01 rad, however slowly, since it last moved. */
+#define REST_TURNED 1.25e-5
+/* Relaxation goes on for so many of its time constants. */
+#define REST_RELAXING 4.0f
+
+static bool obstacles_are_still(const awt_forest *f)
+{
+    for (uint32_t k = 0; k < f->collider_count; k++) {
+        const obstacle *o = &f->obstacles[k];
+        vec3 slip = vec3_sub(o->spin, f->head_spin);
+        if (vec3_length(o->velocity) > REST_OBSTACLE_SPEED_M_S || vec3_length(slip) > REST_HEAD_SPIN) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool rest_world_is_still(awt_forest *f)
+{
+    dquat now = f->pose[TRACK_HEAD].orientation;
+    bool still = vec3_length(f->head_spin) < REST_HEAD_SPIN &&
+                 vec3_length(f->frame_acceleration) < REST_HEAD_ACCELERATION &&
+                 fabs(dquat_dot(now, f->still_orientation)) > 1.0 - REST_TURNED && obstacles_are_still(f);
+    if (!still) {
+        f->still_orientation = now;
+    }
+    return still;
+}
+
+void rest_carry(awt_forest *f, const tree *t, mat3 turn)
+{
+    for (uint32_t k = t->first; k < t->first + t->count; k++) {
+        uint32_t node = f->active_node[k];
+        f->position[node] = mat3_apply(turn, f->position[node]);
+        f->velocity[node] = mat3_apply(turn, f->velocity[node]);
+        f->acceleration[node] = mat3_apply(turn, f->acceleration[node]);
+    }
+}
+
+bool rest_sleeps_on(awt_forest *f, tree *t, bool world_is_still, const track_pose *head_before, float dt_s)
+{
+    if (!t->asleep) {
+        return false;
+    }
+    if (!world_is_still) {
+        t->asleep = false;
+        t->quiet_s = 0.0f;
+        return false;
+    }
+    dquat from = head_before->orientation, to = f->pose[TRACK_HEAD].orientation;
+    if (from.x != to.x || from.y != to.y || from.z != to.z || from.w != to.w) {
+        rest_carry(f, t, mat3_of_quat(quat_of_dquat(dquat_unit(dquat_mul(to, dquat_conjugate(from))))));
+    }
+    if (t->quiet_s < REST_RELAXING * f->params.offset_relaxation) {
+        embed_relax(f, t, dt_s);
+        t->quiet_s += dt_s;
+    }
+    return true;
+}
+
+void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s)
+{
+    bool quiet = world_is_still;
+    for (uint32_t k = t->first; quiet && k < t->first + t->count; k++) {
+        vec3 v = f->velocity[f->active_node[k]];
+        quiet = vec3_dot(v, v) < REST_SPEED_M_S * REST_SPEED_M_S;
+    }
+    t->quiet_s = quiet ? t->quiet_s + dt_s : 0.0f;
+    if (!rest_is_settled(t) || t->count > f->groom->info.sections) {
+        return;
+    }
+    t->asleep = true;
+    for (uint32_t k = t->first; k < t->first + t->count; k++) {
+        f->velocity[f->active_node[k]] = f->acceleration[f->active_node[k]] = (vec3){0, 0, 0};
+    }
+}
+
+void rest_wake_all(awt_forest *f)
+{
+    for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
+        f->trees[t].asleep = false;
+        f->trees[t].quiet_s = 0.0f;
+    }
+}
