@@ -25,15 +25,15 @@ static uint32_t station_at(const wisp_stations *stations, double arc_m)
 /* From station `at` on downhill to the one nearest to `point`: locally, so that a curl that passes by is no match. */
 static uint32_t nearest_station(const wisp_stations *stations, uint32_t at, vec3 point)
 {
-    float here = vec3_distance(point, stations->station[at].centre);
+    float here = vec3_distance(point, evaluate_centre(&stations->station[at]));
     for (int step = -1; step <= 1; step += 2) {
         for (;;) {
             uint32_t next = at + (uint32_t)step; /* below 0 it wraps past the end */
-            if (next >= stations->count || vec3_distance(point, stations->station[next].centre) >= here) {
+            if (next >= stations->count || vec3_distance(point, evaluate_centre(&stations->station[next])) >= here) {
                 break;
             }
             at = next;
-            here = vec3_distance(point, stations->station[at].centre);
+            here = vec3_distance(point, evaluate_centre(&stations->station[at]));
         }
     }
     return at;
@@ -53,7 +53,7 @@ static float bind_strand(groom_draft *build, uint32_t k, const wisp_stations *st
     for (uint32_t i = 0; i < points; i++) {
         uint32_t at = i > 0 ? nearest_station(stations, station_at(stations, line.arc_m[i]), own[i]) : 0;
         const evaluate_station *station = &stations->station[at];
-        vec3 offset = mat3_apply_transposed(station->frame, vec3_sub(own[i], station->centre));
+        vec3 offset = mat3_apply_transposed(evaluate_frame(station), vec3_sub(own[i], evaluate_centre(station)));
         groom->strand_station[(size_t)k * points + i] = (uint16_t)at;
         groom->strand_offset[(size_t)k * points + i] = offset;
         largest = vec3_length(offset) > largest ? vec3_length(offset) : largest;

@@ -1,196 +1,200 @@
-/* paper.c: the paper's §5.2: mean time of a step for the four styles, all finest GCs simulated against the AWT, with
- * the same motion in the same run. Strands are evaluated apart and reported by point. Contact between wisps is not
- * simulated yet, in neither method. */
-#include "bench/bench.h"
+/* paper.c: the paper's §5.2: mean time of a step for the four styles, all finest wisps simulated (single level)
+ * against the AWT, with the same motion, in the same run, by the same code. */
+#include "bench/plan.h"
 
-#include "awt.h"
-#include "base/options.h"
 #include "base/version.h"
-#include "motion/motion.h"
-#include "progress.h"
-#include "quantile.h"
+#include "files.h"
+#include "jsonout.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <time.h>
 
-enum { EVALUATE_EVERY = 10 };
-
-typedef struct run_result {
-    double mean_ms, p99_ms, max_ms;
-    double active_mean, ns_per_active;
-    uint32_t active_max, splits, merges;
-    double merged_at_s;  /* all merged again from here on; < 0: not */
-    double ns_per_point; /* of a strand */
-} run_result;
-
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
-
-/* Time to evaluate all strands once, ms. */
-static double evaluate_ms(const awt_forest *forest, float *memory)
-{
-    const awt_groom *groom = awt_forest_groom(forest);
+typedef struct style_figures {
     awt_groom_info info;
-    awt_groom_get_info(groom, &info);
-    float *centres = memory, *frames = centres + 3 * (size_t)info.finest_nodes,
-          *scratch = frames + 4 * (size_t)info.finest_nodes;
-    double begin = now_ms();
-    awt_forest_guides(forest, centres, frames);
-    awt_groom_strands(groom, centres, frames, scratch, scratch + awt_groom_strand_scratch(groom));
-    return now_ms() - begin;
-}
+    bench_figures single, awt;
+} style_figures;
 
-static size_t evaluate_floats(const awt_groom *groom, const awt_groom_info *info)
-{
-    return 7 * (size_t)info->finest_nodes + awt_groom_strand_scratch(groom) +
-           3 * (size_t)info->strand_count * info->points_per_strand;
-}
-
-static bool run_clip(awt_forest *forest, const motion *clip, int64_t length_us, float *memory, progress *bar,
-                     run_result *out)
-{
-    awt_groom_info info;
-    awt_groom_get_info(awt_forest_groom(forest), &info);
-    size_t steps = (size_t)(length_us / AWT_STEP_US), evaluations = 0;
-    double *times = malloc(steps * sizeof *times), sum = 0, evaluate_sum = 0, active_sum = 0;
-    if (!times) {
-        return false;
-    }
-    *out = (run_result){.merged_at_s = -1};
-    for (size_t n = 0; n < steps; n++) {
-        int64_t time_us = (int64_t)(n + 1) * AWT_STEP_US;
-        motion_sample pose = motion_at(clip, time_us);
-        awt_motion m = {.time_us = time_us, .head = pose.head, .body = pose.body};
-        awt_step_stats stats;
-        double begin = now_ms();
-        awt_forest_move(forest, &m, NULL);
-        awt_forest_advance(forest, time_us, &stats, NULL);
-        times[n] = now_ms() - begin;
-        sum += times[n];
-        active_sum += stats.active_nodes;
-        out->active_max = stats.active_nodes > out->active_max ? stats.active_nodes : out->active_max;
-        out->splits += stats.splits;
-        out->merges += stats.merges;
-        bool merged = stats.active_nodes == info.coarse_nodes && out->splits > 0;
-        out->merged_at_s = !merged ? -1 : out->merged_at_s < 0 ? (double)time_us * 1e-6 : out->merged_at_s;
-        if (n % EVALUATE_EVERY == 0) {
-            evaluate_sum += evaluate_ms(forest, memory);
-            evaluations++;
-        }
-        char text[64];
-        snprintf(text, sizeof text, "%.1f s, %u active", (double)time_us * 1e-6, stats.active_nodes);
-        progress_show(bar, (double)(n + 1) / (double)steps, text);
-    }
-    quantile_sort(times, steps);
-    out->mean_ms = sum / (double)steps;
-    out->p99_ms = quantile_at(times, steps, 0.99);
-    out->max_ms = quantile_at(times, steps, 1);
-    out->active_mean = active_sum / (double)steps;
-    out->ns_per_active = sum * 1e6 / active_sum;
-    out->ns_per_point = evaluate_sum * 1e6 / (double)evaluations / ((double)info.strand_count * info.points_per_strand);
-    free(times);
-    return true;
-}
-
-/* One style, single level or AWT. */
-static bool run_style(const awt_groom *groom, const awt_style *style, bool single, const motion *clip,
-                      int64_t length_us, float *memory, run_result *out)
-{
-    awt_forest_def def = awt_forest_def_default(groom);
-    def.params = style->params;
-    if (single) { /* everything splits, nothing merges */
-        def.params.split_threshold = 0;
-        def.params.residence = 0;
-    }
-    motion_sample start = motion_at(clip, 0);
-    def.start = (awt_motion){.head = start.head, .body = start.body};
-    awt_forest *forest = NULL;
-    if (awt_forest_create(groom, &def, &forest, NULL) != AWT_OK) {
-        return false;
-    }
-    char label[64];
-    snprintf(label, sizeof label, "%s, %s", style->name, single ? "single level" : "AWT");
-    progress bar = progress_begin(stderr, label, false);
-    bool ran = run_clip(forest, clip, length_us, memory, &bar, out);
-    progress_hide(&bar);
-    awt_forest_destroy(forest);
-    return ran;
-}
-
-static bool bench_style(const awt_style *style, uint32_t strand_count, const motion *clip, int64_t length_us)
+static awt_groom *paper_groom(const paper_plan *plan, const awt_style *style, awt_error *error)
 {
     awt_groom_def def = awt_groom_def_of_style(style);
     awt_strands strands = {0};
     awt_groom *groom = NULL;
-    float *memory = NULL;
-    run_result single, awt;
-    bool done = false;
-    if (awt_style_grow(style, strand_count, 1, &strands, NULL) == AWT_OK &&
-        awt_groom_build(&strands, &def, NULL, NULL, &groom, NULL) == AWT_OK) {
-        awt_groom_info info;
-        awt_groom_get_info(groom, &info);
-        memory = malloc(evaluate_floats(groom, &info) * sizeof *memory);
-        done = memory && run_style(groom, style, true, clip, length_us, memory, &single) &&
-               run_style(groom, style, false, clip, length_us, memory, &awt);
-        if (done) {
-            printf("%-12s %6u %2u %6u | %6.3f %6.3f %6.3f | %6.3f %6.3f %6.3f | %5.1fx | %6.0f %6u | %6u %6u %6.2f | "
-                   "%6.0f %6.2f\n",
-                   style->name, info.finest_nodes, info.levels, info.coarse_nodes, single.mean_ms, single.p99_ms,
-                   single.max_ms, awt.mean_ms, awt.p99_ms, awt.max_ms, single.mean_ms / awt.mean_ms, awt.active_mean,
-                   awt.active_max, awt.splits, awt.merges, awt.merged_at_s, awt.ns_per_active, awt.ns_per_point);
-        }
+    def.points_per_strand = plan->points;
+    if (awt_style_grow(style, plan->strands, 1, &strands, error) == AWT_OK) {
+        awt_groom_build(&strands, &def, NULL, NULL, &groom, error);
     }
-    free(memory);
-    awt_groom_destroy(groom);
     awt_strands_fini(&strands);
+    return groom;
+}
+
+/* One line of the table. False: why has been said. */
+static bool paper_measure(const paper_plan *plan, const awt_style *style, style_figures *out)
+{
+    awt_error error = {0};
+    awt_groom *groom = paper_groom(plan, style, &error);
+    bool done = groom != NULL;
+    if (groom) {
+        char label[64];
+        bench_pass pass = {.label = label,
+                           .groom = groom,
+                           .clip = &plan->clip,
+                           .length_us = plan->length_us,
+                           .workers = plan->workers};
+        awt_params params = paper_plan_params(plan, style);
+        awt_groom_get_info(groom, &out->info);
+        snprintf(label, sizeof label, "%s, single level", style->name);
+        pass.params = bench_single_level(params);
+        done = bench_run(&pass, &out->single, &error) == AWT_OK;
+        snprintf(label, sizeof label, "%s, AWT", style->name);
+        pass.params = params;
+        done = done && bench_run(&pass, &out->awt, &error) == AWT_OK;
+    }
+    awt_groom_destroy(groom);
+    if (!done) {
+        fprintf(stderr, "awt-bench paper: %s: %s\n", style->name, error.text);
+    }
+    return done;
+}
+
+/* ---- the table ---- */
+
+static void table_head(FILE *text, const paper_plan *plan)
+{
+    fprintf(text, "%s\n%.2f s in steps of %d ms, %" PRIu32 " strands of %" PRIu32 " points, %" PRIu32 " worker%s\n\n",
+            plan->clip.description, (double)plan->length_us * 1e-6, (int)(AWT_STEP_US / 1000), plan->strands,
+            plan->points, plan->workers, plan->workers == 1 ? "" : "s");
+    fputs("                           |  single level, ms    |            AWT, ms           |       |  active nodes |"
+          "                      |         ns per\n"
+          "style            N L coarse |   mean    p99    max |   mean    p99    max last s | ratio |    mean    max |"
+          " splits merges merged |  node guide point\n",
+          text);
+}
+
+static void table_row(FILE *text, const awt_style *style, const style_figures *f)
+{
+    const bench_spread *single = &f->single.step_ms, *awt = &f->awt.step_ms;
+    char merged[16] = "-";
+    if (f->awt.merged_at_s >= 0) {
+        snprintf(merged, sizeof merged, "%.2f s", f->awt.merged_at_s);
+    }
+    fprintf(text,
+            "%-12s %5" PRIu32 " %" PRIu32 " %6" PRIu32 " | %6.3f %6.3f %6.3f | %6.3f %6.3f %6.3f %6.3f | %4.1fx | "
+            "%7.0f %6" PRIu32 " | %6" PRIu32 " %6" PRIu32 " %6s | %5.0f %5.1f %5.2f\n",
+            style->name, f->info.finest_nodes, f->info.levels, f->info.coarse_nodes, single->mean, single->p99,
+            single->max, awt->mean, awt->p99, awt->max, f->awt.last_second_ms, single->mean / awt->mean,
+            f->awt.active_mean, f->awt.active_max, f->awt.splits, f->awt.merges, merged, f->awt.active_ns,
+            f->awt.guide_ns, f->awt.point_ns);
+    fflush(text);
+}
+
+/* ---- the same as JSON ---- */
+
+static void json_spread(jsonout *j, const char *key, const bench_spread *spread)
+{
+    jsonout_object(j, key);
+    jsonout_real(j, "mean", spread->mean);
+    jsonout_real(j, "p50", spread->p50);
+    jsonout_real(j, "p99", spread->p99);
+    jsonout_real(j, "max", spread->max);
+    jsonout_close(j);
+}
+
+static void json_active(jsonout *j, const char *key, const bench_figures *f)
+{
+    jsonout_object(j, key);
+    jsonout_real(j, "mean", f->active_mean);
+    jsonout_unsigned(j, "max", f->active_max);
+    jsonout_close(j);
+}
+
+static void json_style(jsonout *j, const awt_style *style, const style_figures *f)
+{
+    jsonout_object(j, NULL);
+    jsonout_text(j, "name", style->name);
+    jsonout_unsigned(j, "finest_nodes", f->info.finest_nodes);
+    jsonout_unsigned(j, "levels", f->info.levels);
+    jsonout_unsigned(j, "coarse_nodes", f->info.coarse_nodes);
+    json_spread(j, "single_ms", &f->single.step_ms);
+    json_spread(j, "awt_ms", &f->awt.step_ms);
+    jsonout_real(j, "ratio", f->single.step_ms.mean / f->awt.step_ms.mean);
+    json_active(j, "active", &f->awt);
+    json_active(j, "single_active", &f->single);
+    jsonout_unsigned(j, "splits", f->awt.splits);
+    jsonout_unsigned(j, "merges", f->awt.merges);
+    jsonout_real(j, "merged_at_s", f->awt.merged_at_s >= 0 ? f->awt.merged_at_s : NAN); /* null: not */
+    jsonout_real(j, "last_second_ms", f->awt.last_second_ms);
+    jsonout_unsigned(j, "top_wisps", f->info.wisp_count[0]);
+    jsonout_unsigned(j, "asleep_trees", f->awt.asleep_trees);
+    jsonout_real(j, "ns_per_active_node", f->awt.active_ns);
+    jsonout_real(j, "single_ns_per_active_node", f->single.active_ns);
+    jsonout_real(j, "ns_per_guide", f->awt.guide_ns);
+    jsonout_real(j, "ns_per_strand_point", f->awt.point_ns);
+    jsonout_real(j, "forest_bytes_per_finest_node", (double)f->awt.forest_bytes / f->info.finest_nodes);
+    jsonout_real(j, "groom_bytes_per_strand", (double)f->info.bytes / f->info.strand_count);
+    jsonout_float(j, "link_error", f->awt.link_error);
+    jsonout_unsigned(j, "unreached_contacts", f->awt.unreached_contacts);
+    jsonout_close(j);
+}
+
+static bool json_document_to(FILE *file, const paper_plan *plan, const style_figures *figures)
+{
+    jsonout j = jsonout_begin(file);
+    jsonout_object(&j, NULL);
+    jsonout_text(&j, "version", AWTD_VERSION);
+    jsonout_text(&j, "motion", plan->motion_name);
+    jsonout_real(&j, "seconds", (double)plan->length_us * 1e-6);
+    jsonout_unsigned(&j, "strands", plan->strands);
+    jsonout_unsigned(&j, "points_per_strand", plan->points);
+    jsonout_unsigned(&j, "workers", plan->workers);
+    jsonout_real(&j, "theta", plan->theta >= 0 ? plan->theta : NAN);                            /* null: the style's */
+    jsonout_text(&j, "links", plan->links < 0 ? NULL : plan->links == 1 ? "springs" : "rigid"); /* likewise */
+    jsonout_array(&j, "styles");
+    for (size_t s = 0; s < plan->style_count; s++) {
+        json_style(&j, plan->styles[s], &figures[s]);
+    }
+    jsonout_close(&j);
+    jsonout_close(&j);
+    return jsonout_done(&j);
+}
+
+/* To standard output, or to a file whole or not at all. */
+static bool json_write(const paper_plan *plan, const style_figures *figures)
+{
+    char *text = NULL, error[512] = "not enough memory for the JSON text";
+    size_t size = 0;
+    if (plan->json[0] == '-' && plan->json[1] == '\0') {
+        return json_document_to(stdout, plan, figures);
+    }
+    FILE *memory = open_memstream(&text, &size);
+    bool done = memory && json_document_to(memory, plan, figures);
+    done = memory && fclose(memory) == 0 && done && files_write(plan->json, text, size, error, sizeof error);
+    if (!done) {
+        fprintf(stderr, "awt-bench paper: %s\n", error);
+    }
+    free(text);
     return done;
 }
 
 int bench_paper(int argc, char *const *argv)
 {
-    const char *clip_name = "lean";
-    long long strands = AWT_DEFAULT_STRANDS;
-    double seconds = 10;
-    const option options[] = {
-        {"motion", OPTION_TEXT, "CLIP", &clip_name, 0, 0, "lean, jump, run or shake"},
-        {"strands", OPTION_INTEGER, "N", &strands, 1, AWT_MAX_STRANDS, "strands of each style"},
-        {"seconds", OPTION_REAL, "S", &seconds, 0.1, 600, "simulated time"},
-    };
-    const option_program program = {"awt-bench paper", "The table of the paper's §5.2: times of a 10 ms step, in ms.",
-                                    NULL, options, sizeof options / sizeof options[0]};
-    char error[160];
-    size_t operands;
-    switch (options_parse(&program, argc, argv, NULL, 0, &operands, error, sizeof error)) {
-    case OPTIONS_HELP:
-        options_help(&program, stdout);
-        return 0;
-    case OPTIONS_VERSION:
-        puts("awt-bench " AWTD_VERSION);
-        return 0;
-    case OPTIONS_WRONG:
-        fprintf(stderr, "awt-bench paper: %s\n", error);
-        return 2;
-    case OPTIONS_RUN:
-        break;
+    paper_plan plan;
+    int code;
+    if (!paper_plan_read(argc, argv, &plan, &code)) {
+        return code;
     }
-    motion clip;
-    if (!motion_builtin(clip_name, &clip)) {
-        fprintf(stderr, "awt-bench paper: there is no clip \"%s\"; there are lean, jump, run and shake\n", clip_name);
-        return 2;
-    }
-    printf("style             N  L coarse | single mean    p99    max | AWT mean    p99    max |  ratio | active    "
-           "max | splits merges merged | ns/node ns/point\n");
+    style_figures figures[PAPER_MAX_STYLES];
+    FILE *text = plan.json && plan.json[0] == '-' && plan.json[1] == '\0' ? stderr : stdout;
+    table_head(text, &plan);
     bool done = true;
-    for (size_t s = 0; done && s < awt_style_count(); s++) {
-        done = bench_style(awt_style_at(s), (uint32_t)strands, &clip, (int64_t)(seconds * 1e6));
+    for (size_t s = 0; done && s < plan.style_count; s++) {
+        done = paper_measure(&plan, plan.styles[s], &figures[s]);
+        if (done) {
+            table_row(text, plan.styles[s], &figures[s]);
+        }
     }
-    motion_fini(&clip);
+    done = done && (!plan.json || json_write(&plan, figures));
+    paper_plan_fini(&plan);
     return done ? 0 : 1;
 }
