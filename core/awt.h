@@ -36,7 +36,8 @@ extern "C" {
     X(AWT_NO_HEAD, "the head cannot be told from the roots: give its centre and radius")          \
     X(AWT_NO_STYLE, "no built-in style of that name")                                             \
     X(AWT_NO_PARAM, "no parameter of that name")                                                  \
-    X(AWT_BAD_TIME, "time does not run backwards")
+    X(AWT_BAD_TIME, "time does not run backwards")                                                \
+    X(AWT_OTHER_VERSION, "made by another version of awt")
 
 typedef enum awt_status {
 #define AWT_STATUS_ENUM(name, text) name,
@@ -132,6 +133,8 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
     X(wind_y, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                   \
     X(wind_z, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                   \
     X(speed_limit, 20.0f, 0.1f, 1000.0f, "m/s", "nodes never move faster than this relative to the head")           \
+    X(settling, 2.0f, 0.0f, 100.0f, "1/s2",                                                                         \
+      "drag that comes up once head and obstacles have been still for 2 s; 0: none")                                \
     X(links, 0.0f, 0.0f, 1.0f, "", "AWT 2.3: 0 rigid links, 1 viscous springs")                                     \
     X(link_omega, 400.0f, 1.0f, 2000.0f, "rad/s", "spring links: frequency under the mass that hangs on each")      \
     X(link_damping, 0.8f, 0.0f, 10.0f, "", "spring links: damping ratio")                                           \
@@ -327,6 +330,62 @@ size_t awt_forest_bytes(const awt_forest *forest);
 
 /* Hash of the whole simulation state: equal inputs give equal hashes (PHYSICS.md, invariant 11). */
 uint64_t awt_forest_hash(const awt_forest *forest);
+
+/* ---- exact state: snapshots and recordings ----------------------------------------------------------------------- */
+
+/* Goes up whenever the same inputs give other bits than before, or the state holds more than before. */
+#define AWT_PHYSICS_VERSION 1
+
+/* Writes everything that the forest's future depends on, its groom included: restored, in another process or on
+ * another machine, it goes on to the bit as if it had never stopped, poses that wait included. *size is always set to
+ * the bytes needed; with `bytes` NULL nothing else happens. AWT_LIMIT where `capacity` is less. */
+awt_status awt_forest_snapshot(const awt_forest *forest, void *bytes, size_t capacity, size_t *size, awt_error *error);
+
+/* Makes the groom and the forest of a snapshot; the caller owns both and destroys the forest first. The bytes may come
+ * from anywhere: whatever awt_forest_snapshot could not have written is refused, with memory in proportion to `size`.
+ * AWT_BAD_FORMAT (not a snapshot), AWT_TRUNCATED, AWT_BAD_VALUE (damaged), AWT_OTHER_VERSION (of the physics:
+ * awt_snapshot_read_groom still reads it; or of the format), AWT_LIMIT, AWT_NO_MEMORY. *groom and *forest are NULL
+ * then. */
+awt_status awt_snapshot_restore(const void *bytes, size_t size, awt_groom **groom, awt_forest **forest,
+                                awt_error *error);
+
+/* The groom and the parameters alone, from a snapshot of any physics version: parameters that this version has not are
+ * passed over, those that the snapshot has not keep their defaults. Errors as above; *groom is NULL then and `params`
+ * unchanged. */
+awt_status awt_snapshot_read_groom(const void *bytes, size_t size, awt_groom **groom, awt_params *params,
+                                   awt_error *error);
+
+/* A recording is a snapshot of the start and every input after it, with the state's hash after each advance. The
+ * recorder is the caller's; it holds no memory and writes nothing but through `write`, once for each record. */
+typedef struct awt_recorder {
+    awt_forest *forest;
+    void (*write)(void *context, const void *bytes, size_t size);
+    void *context;
+} awt_recorder;
+
+/* Begins a recording: writes the snapshot of the forest as it stands. From then on the forest is driven through the
+ * recorder. AWT_NO_MEMORY; nothing is written then. */
+awt_status awt_recorder_begin(awt_recorder *recorder, awt_error *error);
+/* awt_forest_move, awt_forest_set_params and awt_forest_advance, written down where they succeed. */
+awt_status awt_recorder_move(awt_recorder *recorder, const awt_motion *motion, awt_error *error);
+awt_status awt_recorder_set_params(awt_recorder *recorder, const awt_params *params, awt_error *error);
+awt_status awt_recorder_advance(awt_recorder *recorder, int64_t time_us, awt_step_stats *stats, awt_error *error);
+
+typedef struct awt_replay awt_replay;
+
+/* Begins to run a recording again from its start. `bytes` stays the caller's until awt_replay_destroy. Errors as
+ * awt_snapshot_restore; *out is NULL then. */
+awt_status awt_replay_create(const void *bytes, size_t size, awt_replay **out, awt_error *error);
+/* Runs the recording through its next advance and compares the hash. *more is false at the end, where nothing ran.
+ * One call runs at most AWT_MAX_ADVANCE_US of simulated time: a caller that does not trust the recording can stop
+ * between calls. AWT_BAD_VALUE (another hash, with the number of the step in the text, or a damaged record),
+ * AWT_TRUNCATED (it ends within a record: whoever wrote it was stopped), what an input was refused for. */
+awt_status awt_replay_next(awt_replay *replay, bool *more, awt_error *error);
+/* The forest as it stands; the replay's own. */
+const awt_forest *awt_replay_forest(const awt_replay *replay);
+/* Advances that ran and had the recorded hash. */
+uint64_t awt_replay_steps(const awt_replay *replay);
+void awt_replay_destroy(awt_replay *replay);
 
 /* ---- reading the hair back
  * -------------------------------------------------------------------------------------------- */

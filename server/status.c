@@ -14,6 +14,7 @@ static const int wire_errors[] = {
     [AWT_NO_STYLE] = PROTO_ERROR_NO_STYLE,
     [AWT_NO_PARAM] = PROTO_ERROR_NO_PARAM,
     [AWT_BAD_TIME] = PROTO_ERROR_BAD_TIME,
+    [AWT_OTHER_VERSION] = PROTO_ERROR_NOT_SUPPORTED,
 };
 
 #define COUNT_STATUS(name, text) +1

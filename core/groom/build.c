@@ -25,39 +25,6 @@ awt_groom_def awt_groom_def_of_style(const awt_style *style)
                            .head_radius_m = AWT_HEAD_RADIUS_M};
 }
 
-static void take_plan(awt_groom *groom, const groom_plan *plan)
-{
-    groom->info.strand_count = plan->strand_count;
-    groom->info.points_per_strand = plan->points_per_strand;
-    groom->info.levels = plan->levels;
-    groom->info.sections = plan->sections;
-    groom->info.head_radius_m = plan->head_radius_m;
-    for (uint32_t level = 0; level < plan->levels; level++) {
-        groom->info.wisp_count[level] = plan->wisp_count[level];
-        groom->level_first[level + 1] = groom->level_first[level] + plan->wisp_count[level];
-    }
-    groom->gc_count = groom->level_first[plan->levels];
-    groom->info.coarse_nodes = plan->wisp_count[0] * plan->sections;
-    groom->info.finest_nodes = plan->wisp_count[plan->levels - 1] * plan->sections;
-}
-
-static void lay_out_groom(awt_groom *groom, arena *memory)
-{
-    const size_t gcs = groom->gc_count, nodes = gcs * groom->info.sections;
-    const size_t points = (size_t)groom->info.strand_count * groom->info.points_per_strand;
-    groom->gc_super = ARENA_PUSH(memory, uint32_t, gcs);
-    groom->gc_sub_first = ARENA_PUSH(memory, uint32_t, gcs);
-    groom->gc_sub_count = ARENA_PUSH(memory, uint32_t, gcs);
-    groom->gc_tree = ARENA_PUSH(memory, uint32_t, gcs);
-    groom->gc_strand_count = ARENA_PUSH(memory, uint32_t, gcs);
-    groom->rest_position = ARENA_PUSH(memory, vec3, nodes);
-    groom->rest_radius = ARENA_PUSH(memory, float, nodes);
-    groom->rest_frame = ARENA_PUSH(memory, quat, groom->info.finest_nodes);
-    groom->gc_strand_first = ARENA_PUSH(memory, uint32_t, (size_t)groom->info.wisp_count[groom->info.levels - 1] + 1);
-    groom->strand_station = ARENA_PUSH(memory, uint16_t, points);
-    groom->strand_offset = ARENA_PUSH(memory, vec3, points);
-}
-
 static void lay_out_scratch(groom_draft *build, arena *memory)
 {
     const size_t strands = build->groom->info.strand_count;
@@ -73,15 +40,10 @@ static void lay_out_scratch(groom_draft *build, arena *memory)
 
 static bool take_memory(groom_draft *build)
 {
-    arena counting = arena_counting();
-    lay_out_groom(build->groom, &counting);
-    if (counting.overflowed || !arena_init(&build->groom->memory, counting.used)) {
+    if (!groom_take_memory(build->groom)) {
         return false;
     }
-    lay_out_groom(build->groom, &build->groom->memory);
-    build->groom->info.bytes = sizeof *build->groom + build->groom->memory.size;
-
-    counting = arena_counting();
+    arena counting = arena_counting();
     lay_out_scratch(build, &counting);
     if (counting.overflowed || !arena_init(&build->memory, counting.used)) {
         return false;
@@ -168,7 +130,7 @@ awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
     if (!build.groom) {
         goto fail;
     }
-    take_plan(build.groom, &plan);
+    groom_take_plan(build.groom, &plan);
     if (!take_memory(&build)) {
         goto fail;
     }
@@ -188,17 +150,4 @@ fail:
     arena_fini(&build.memory);
     awt_groom_destroy(build.groom);
     return error_set(error, AWT_NO_MEMORY, NULL);
-}
-
-void awt_groom_destroy(awt_groom *groom)
-{
-    if (groom) {
-        arena_fini(&groom->memory);
-        free(groom);
-    }
-}
-
-void awt_groom_get_info(const awt_groom *groom, awt_groom_info *info)
-{
-    *info = groom->info;
 }

@@ -9,6 +9,7 @@
 #include "awt.h"
 #include "base/arena.h"
 #include "base/vec.h"
+#include "groom/plan.h"
 
 enum { GROOM_TABLE_PER_SEGMENT = 2 }; /* strand points are bound to this many stations per segment (evaluate.h) */
 
@@ -55,5 +56,13 @@ static inline bool groom_descend(const awt_groom *groom, uint32_t *lo, uint32_t 
     *hi = groom->gc_sub_first[last] + groom->gc_sub_count[last];
     return true;
 }
+
+/* Sets every size of a zeroed groom. */
+void groom_take_plan(awt_groom *groom, const groom_plan *plan);
+/* Takes the memory of all arrays, zeroed, for the sizes that the groom has. False: no memory. */
+bool groom_take_memory(awt_groom *groom);
+/* Sets gc_super, gc_sub_first, gc_tree and gc_strand_first from gc_sub_count and gc_strand_count. False: the counts
+ * do not make trees that share out all wisps and strands. */
+bool groom_number(awt_groom *groom);
 
 #endif

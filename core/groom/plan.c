@@ -147,7 +147,7 @@ static void choose_wisps(const awt_groom_def *def, groom_plan *plan)
     }
 }
 
-static awt_status check_sizes(const groom_plan *plan, awt_error *error)
+awt_status plan_check_sizes(const groom_plan *plan, awt_error *error)
 {
     uint64_t points = (uint64_t)plan->strand_count * plan->points_per_strand;
     if (points > AWT_MAX_POINTS) {
@@ -181,7 +181,7 @@ awt_status plan_make(const awt_strands *strands, const awt_groom_def *def, groom
     plan.sections = def->sections ? def->sections : choose_sections(strands);
     plan.head_radius_m = def->head_radius_m;
     choose_wisps(def, &plan);
-    status = check_sizes(&plan, error);
+    status = plan_check_sizes(&plan, error);
     if (status == AWT_OK) {
         *out = plan;
     }

@@ -15,4 +15,7 @@ typedef struct groom_plan {
 /* AWT_NO_STRANDS, AWT_BAD_VALUE, AWT_LIMIT; `out` is written on success only. */
 awt_status plan_make(const awt_strands *strands, const awt_groom_def *def, groom_plan *out, awt_error *error);
 
+/* Points and nodes within the limits of awt.h? AWT_LIMIT. */
+awt_status plan_check_sizes(const groom_plan *plan, awt_error *error);
+
 #endif

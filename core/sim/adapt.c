@@ -93,6 +93,7 @@ static void merge_apply(awt_forest *f, uint32_t g, const fusion *super)
     f->radius[node] = super->radius;
     for (uint32_t s = groom->gc_sub_first[g]; s < groom->gc_sub_first[g] + groom->gc_sub_count[g]; s++) {
         f->offset[s * sections + i] = state_to_head(f, vec3_sub(f->position[s * sections + i], super->position));
+        f->parent_node[s * sections + i] = STATE_NO_PARENT;
     }
 }
 
@@ -114,6 +115,7 @@ static void split_apply(awt_forest *f, uint32_t g)
     const awt_groom *groom = f->groom;
     const uint32_t sections = groom->info.sections, i = --f->first_split[g], node = g * sections + i;
     f->event_us[g] = f->time_us;
+    f->parent_node[node] = STATE_NO_PARENT;
     for (uint32_t s = groom->gc_sub_first[g]; s < groom->gc_sub_first[g] + groom->gc_sub_count[g]; s++) {
         uint32_t sub = s * sections + i;
         f->position[sub] = vec3_add(f->position[node], mat3_apply(f->head, f->offset[sub]));

@@ -3,6 +3,7 @@
 #include "sim/dynamics.h"
 
 #include "sim/relax.h"
+#include "sim/rest.h"
 #include "sim/joint.h"
 
 /* The turn of every segment from rest to now, and its tangent. */
@@ -37,7 +38,7 @@ static void dynamics_load(awt_forest *f, const tree *t, float dt_s)
     const awt_params *p = &f->params;
     vec3 gravity = {p->gravity_x, p->gravity_y, p->gravity_z}, wind = {p->wind_x, p->wind_y, p->wind_z};
     vec3 outside = vec3_mad(vec3_sub(gravity, f->frame_acceleration), wind, p->drag);
-    float slowing = 1.0f / (1.0f + dt_s * p->drag);
+    float slowing = 1.0f / (1.0f + dt_s * (p->drag + rest_drag(f)));
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
         vec3 preload = mat3_apply(f->head, f->active_preload[k]);
         f->next[k] = vec3_scale(vec3_mad(f->next[k], vec3_add(outside, preload), dt_s), slowing);

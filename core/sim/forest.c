@@ -85,6 +85,9 @@ static void forest_rest(awt_forest *f)
         f->first_split[g] = groom->info.sections;
         f->event_us[g] = f->time_us;
     }
+    for (uint32_t n = 0; n < groom->gc_count * groom->info.sections; n++) {
+        f->parent_node[n] = STATE_NO_PARENT;
+    }
     for (uint32_t t = 0; t < groom->info.wisp_count[0]; t++) {
         f->trees[t].first = slots;
         slots += tree_capacity(groom, t);
@@ -263,6 +266,7 @@ uint64_t awt_forest_hash(const awt_forest *f)
     uint64_t hash = hash_u64(HASH_SEED, (uint64_t)f->time_us);
     hash = hash_words(hash, f->first_split, groom->gc_count);
     hash = hash_words(hash, f->event_us, 2 * (size_t)groom->gc_count);
+    hash = hash_words(hash, &f->still_s, 1);
     hash = hash_words(hash, &f->frame_velocity, sizeof f->frame_velocity / 4);
     for (uint32_t k = 0; k < TRACK_OWN + f->track.own_count; k++) {
         hash = hash_words(hash, &f->pose[k].position, sizeof f->pose[k].position / 4);

@@ -40,7 +40,7 @@ static mat3 mat3_plus_one(mat3 a)
 }
 
 /* a + s A^T B */
-static mat3 mat3_add_product(mat3 a, mat3 A, mat3 B, float s)
+static inline mat3 mat3_add_product(mat3 a, mat3 A, mat3 B, float s)
 {
     return (mat3){vec3_mad(a.x, mat3_apply_transposed(A, B.x), s), vec3_mad(a.y, mat3_apply_transposed(A, B.y), s),
                   vec3_mad(a.z, mat3_apply_transposed(A, B.z), s)};
@@ -120,9 +120,9 @@ static void joint_add_link(awt_forest *f, uint32_t k, const joint *j)
     f->joint_push[p] = vec3_mad(f->joint_push[p], along, pull);
 }
 
-/* Adds slot k's joint to the three nodes that it ties, then takes node k out of the system. What the root's terms
- * become does not matter: its velocity is given. */
-static void joint_eliminate(awt_forest *f, uint32_t k, const joint *j)
+/* Adds slot k's joint to the three nodes that it ties, then takes node k out of the system:
+ * v_k = free - by_parent v_parent - by_above v_above. Nothing is left on the root: its velocity is given. */
+static void joint_eliminate(awt_forest *f, const tree *t, uint32_t k, const joint *j)
 {
     uint32_t p = f->active_parent[k], above = f->active_parent[p];
     float c = j->weight;
@@ -136,7 +136,15 @@ static void joint_eliminate(awt_forest *f, uint32_t k, const joint *j)
 
     sym3 inverse = sym3_inverse(own);
     vec3 free = sym3_apply(inverse, push);
-    mat3 by_parent = sym3_mul(inverse, to_parent), by_above = sym3_mul(inverse, to_above);
+    mat3 by_parent = sym3_mul(inverse, to_parent);
+    f->joint_push[k] = free;
+    f->joint_up[k] = by_parent;
+    f->joint_far[k] = (mat3){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}; /* a root has no arm */
+    if (p == t->first) {
+        return;
+    }
+    mat3 by_above = sym3_mul(inverse, to_above);
+    f->joint_far[k] = by_above;
 
     sym3 parent_mass = sym3_add_product(f->joint_mass[p], one_arm, one_arm, c);
     f->joint_mass[p] = sym3_add_product(parent_mass, to_parent, by_parent, -1.0f);
@@ -144,16 +152,13 @@ static void joint_eliminate(awt_forest *f, uint32_t k, const joint *j)
     f->joint_up[p] = mat3_add_product(parent_up, to_parent, by_above, -1.0f);
     vec3 parent_push = vec3_mad(f->joint_push[p], mat3_apply_transposed(one_arm, j->bias), c);
     f->joint_push[p] = vec3_sub(parent_push, mat3_apply_transposed(to_parent, free));
-
+    if (above == t->first) {
+        return;
+    }
     sym3 above_mass = sym3_add_product(f->joint_mass[above], j->arm, j->arm, c);
     f->joint_mass[above] = sym3_add_product(above_mass, to_above, by_above, -1.0f);
     vec3 above_push = vec3_mad(f->joint_push[above], mat3_apply_transposed(j->arm, j->bias), -c);
     f->joint_push[above] = vec3_sub(above_push, mat3_apply_transposed(to_above, free));
-
-    /* v_k = free - by_parent v_parent - by_above v_above */
-    f->joint_push[k] = free;
-    f->joint_up[k] = by_parent;
-    f->joint_far[k] = by_above;
 }
 
 void joint_resolve(awt_forest *f, const tree *t, float dt_s)
@@ -171,7 +176,7 @@ void joint_resolve(awt_forest *f, const tree *t, float dt_s)
             joint_link(f, k, dt_s, &j);
             joint_add_link(f, k, &j);
         }
-        joint_eliminate(f, k, &j);
+        joint_eliminate(f, t, k, &j);
     }
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
         uint32_t p = f->active_parent[k], above = f->active_parent[p];

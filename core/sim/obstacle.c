@@ -52,7 +52,7 @@ static bool grows_on_the_head(const awt_groom *groom)
 
 uint32_t obstacle_defaults(const awt_groom *groom, awt_collider out[AWT_MAX_COLLIDERS])
 {
-    awt_collider person[AWT_MAX_COLLIDERS];
+    awt_collider person[AWT_MAX_COLLIDERS] = {0};
     uint32_t count = awt_colliders_default(groom->info.head_radius_m, person), taken = 0;
     bool with_body = grows_on_the_head(groom);
     for (uint32_t k = 0; k < count; k++) {
@@ -102,6 +102,14 @@ static uint32_t obstacle_track(const awt_forest *f, uint32_t k)
     return TRACK_OWN + own;
 }
 
+/* The sphere about both ends, a little wider than rounding asks for. */
+static void obstacle_bound(obstacle *o)
+{
+    float greatest = o->radius_a > o->radius_b ? o->radius_a : o->radius_b;
+    o->middle = vec3_lerp(o->a, o->b, 0.5f);
+    o->reach = (0.5f * vec3_distance(o->a, o->b) + greatest) * 1.001f;
+}
+
 void obstacle_place(awt_forest *f, const track_pose *before, float dt_s)
 {
     dvec3 head = f->pose[TRACK_HEAD].position;
@@ -126,6 +134,7 @@ void obstacle_place(awt_forest *f, const track_pose *before, float dt_s)
             .rest_b = b,
             .rests = c->frame != AWT_FRAME_OWN,
         };
+        obstacle_bound(&f->obstacles[k]);
     }
 }
 
@@ -177,6 +186,10 @@ static bool turn_onto(vec3 parent, float length, vec3 centre, float radius, vec3
 /* Keeps slot k out of one obstacle. False: the link kept it inside. */
 static bool obstacle_keep_out(awt_forest *f, uint32_t k, const obstacle *o, vec3 parent, float length)
 {
+    vec3 apart = vec3_sub(f->next[k], o->middle);
+    if (vec3_dot(apart, apart) >= o->reach * o->reach) {
+        return true;
+    }
     float share = axis_share(o->a, o->b, f->next[k]);
     vec3 centre = vec3_lerp(o->a, o->b, share);
     float greatest = o->radius_a > o->radius_b ? o->radius_a : o->radius_b;

@@ -13,6 +13,8 @@
 #define REST_OBSTACLE_SPEED_M_S 0.002f
 /* 1 - |q . q0| of a head that has turned by 0.01 rad, however slowly, since it last moved. */
 #define REST_TURNED 1.25e-5
+#define REST_DRAG_AFTER_S 2.0f
+#define REST_DRAG_MOST 30.0f
 /* Relaxation goes on for so many of its time constants. */
 #define REST_RELAXING 4.0f
 
@@ -28,7 +30,7 @@ static bool obstacles_are_still(const awt_forest *f)
     return true;
 }
 
-bool rest_world_is_still(awt_forest *f)
+bool rest_world_is_still(awt_forest *f, float dt_s)
 {
     dquat now = f->pose[TRACK_HEAD].orientation;
     bool still = vec3_length(f->head_spin) < REST_HEAD_SPIN &&
@@ -37,7 +39,14 @@ bool rest_world_is_still(awt_forest *f)
     if (!still) {
         f->still_orientation = now;
     }
+    f->still_s = still ? f->still_s + dt_s : 0.0f;
     return still;
+}
+
+float rest_drag(const awt_forest *f)
+{
+    float drag = (f->still_s - REST_DRAG_AFTER_S) * f->params.settling;
+    return drag < 0.0f ? 0.0f : drag > REST_DRAG_MOST ? REST_DRAG_MOST : drag;
 }
 
 void rest_carry(awt_forest *f, const tree *t, mat3 turn)
@@ -90,6 +99,7 @@ void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s)
 
 void rest_wake_all(awt_forest *f)
 {
+    f->still_s = 0.0f;
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
         f->trees[t].asleep = false;
         f->trees[t].quiet_s = 0.0f;

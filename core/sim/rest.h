@@ -5,8 +5,13 @@
 
 #include "sim/state.h"
 
-/* Is the world still around the head, so that trees may rest? After step_pose has placed head and obstacles. */
-bool rest_world_is_still(awt_forest *f);
+/* Is the world still around the head, so that trees may rest? Counts for how long. After step_pose has placed head and
+ * obstacles. */
+bool rest_world_is_still(awt_forest *f, float dt_s);
+
+/* Drag towards the head, 1/s, that comes up while the world stays still: a wisp that goes on swinging over an
+ * obstacle's edge, splitting and merging, would otherwise do so for ever. */
+float rest_drag(const awt_forest *f);
 
 /* True if the tree sleeps through this sub-step: it is carried with the head, and its offsets finish relaxing. Wakes it
  * where the world is not still. */

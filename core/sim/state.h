@@ -25,10 +25,15 @@ typedef struct tree {
     float quiet_s; /* for so long it has hardly moved */
 } tree;
 
+/* parent_node of a node that is not active: whatever parent it gets is a new one. */
+#define STATE_NO_PARENT UINT32_MAX
+
 /* Where an obstacle is in this sub-step, relative to the head's centre, and how it moves there. */
 typedef struct obstacle {
     vec3 a, b;
     float radius_a, radius_b;
+    vec3 middle;         /* of a sphere that holds all of it */
+    float reach;         /* that sphere's radius */
     vec3 velocity, spin; /* of its frame; at the frame's origin */
     vec3 origin;
     vec3 rest_a, rest_b; /* at rest, head frame: no node is held farther out than it rests (obstacle.c) */
@@ -52,6 +57,7 @@ struct awt_forest {
     vec3 frame_acceleration;
     obstacle obstacles[AWT_MAX_COLLIDERS];
     dquat still_orientation; /* of the head, when the world was last not still (rest.c) */
+    float still_s;           /* for so long the world has been still */
 
     /* the AWTs; per GC, [gc_count] */
     uint32_t *first_split; /* node (g, i) is active iff first_split[super(g)] <= i < first_split[g] */
@@ -62,7 +68,7 @@ struct awt_forest {
     vec3 *acceleration; /* in the world, filtered */
     float *radius;
     float *link_length;    /* this step's target */
-    uint32_t *parent_node; /* of the AWT; a root's: itself */
+    uint32_t *parent_node; /* of the AWT; a root's: itself; STATE_NO_PARENT where not active */
     vec3 *reference;       /* head frame: direction of its chord at which the offsets below it were taken */
     vec3 *offset;          /* head frame: from the super-node, when the chord had its reference direction */
     quat *frame;           /* finest nodes [finest_nodes]: section frame to head frame, at the reference direction */

@@ -81,7 +81,7 @@ void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_s
     const uint32_t trees = f->groom->info.wisp_count[0];
     track_pose before[TRACK_COUNT];
     step_pose(f, sample_us, dt_s, before);
-    bool world_is_still = rest_world_is_still(f);
+    bool world_is_still = rest_world_is_still(f, dt_s);
     f->time_us = end_us;
     for (uint32_t t = 0; t < trees; t++) {
         if (rest_sleeps_on(f, &f->trees[t], world_is_still, &before[TRACK_HEAD], dt_s)) {

@@ -70,7 +70,7 @@ awt_status track_init(track *t, const awt_motion *start, const awt_collider *col
 
 static track_instant *queue_at(track *t, uint32_t k)
 {
-    return &t->queue[(t->queue_first + k) % AWT_MAX_QUEUED_POSES];
+    return &t->queue[track_queued(t, k)];
 }
 
 awt_status track_push(track *t, const awt_motion *motion, int64_t now_us, awt_error *error)
@@ -147,7 +147,7 @@ static void track_arrive(track *t)
         }
     }
     t->last = *next;
-    t->queue_first = (t->queue_first + 1) % AWT_MAX_QUEUED_POSES;
+    t->queue_first = track_queued(t, 1);
     t->queue_count--;
 }
 

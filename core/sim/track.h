@@ -36,6 +36,12 @@ typedef struct track {
     uint32_t queue_first, queue_count;
 } track;
 
+/* Index in the queue of the k-th instant that waits. */
+static inline uint32_t track_queued(const track *t, uint32_t k)
+{
+    return (t->queue_first + k) % AWT_MAX_QUEUED_POSES;
+}
+
 /* Starts at rest at the given poses; `colliders` names those with frames of their own. AWT_BAD_VALUE. */
 awt_status track_init(track *t, const awt_motion *start, const awt_collider *colliders, uint32_t collider_count,
                       awt_error *error);

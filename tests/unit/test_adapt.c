@@ -236,3 +236,35 @@ TEST(an_infinite_threshold_never_splits)
     CHECK_INT(splits, 0);
     awt_forest_destroy(f);
 }
+
+/* What an inactive node held when it was last active must not come back when it is active again. */
+TEST(a_wisp_that_opens_again_remembers_nothing_of_its_last_opening)
+{
+    const double zero[3] = {0, 0, 0};
+    const awt_groom *groom = fixture_groom("long", STRANDS);
+    awt_forest *clean = fixture_forest(groom, "long", zero, zero), *stale = fixture_forest(groom, "long", zero, zero);
+    float shortest = 1;
+    for (int n = 1; n <= 500; n++) {
+        for (uint32_t k = 0; k < groom->gc_count * groom->info.sections; k++) {
+            uint32_t slot = stale->slot_of_node[k];
+            const tree *t = &stale->trees[groom->gc_tree[k / groom->info.sections]];
+            bool active = slot >= t->first && slot < t->first + t->count && stale->active_node[slot] == k;
+            if (!active) {
+                stale->link_length[k] = 7.0f;
+                stale->radius[k] = 8.0f;
+                stale->position[k] = stale->velocity[k] = stale->acceleration[k] = (vec3){9, 9, 9};
+            }
+        }
+        fixture_advance(clean, fixture_clip("jump"), (int64_t)n * AWT_STEP_US, zero, zero, NULL);
+        fixture_advance(stale, fixture_clip("jump"), (int64_t)n * AWT_STEP_US, zero, zero, NULL);
+        const tree *first = &clean->trees[0];
+        for (uint32_t k = first->first + 1; k < first->first + first->count; k++) {
+            float length = clean->link_length[clean->active_node[k]];
+            shortest = length < shortest ? length : shortest;
+        }
+    }
+    CHECK_U64(awt_forest_hash(stale), awt_forest_hash(clean));
+    CHECK(shortest > 0.001f); /* nor does a node that opens for the first time begin with no link */
+    awt_forest_destroy(clean);
+    awt_forest_destroy(stale);
+}

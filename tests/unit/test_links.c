@@ -41,6 +41,7 @@ static awt_forest *chain_forest(const awt_groom *groom, bool springs)
     def.params.style_omega = 0;
     def.params.rest_gravity = 0;
     def.params.drag = 0;
+    def.params.settling = 0;
     def.params.links = springs ? 1 : 0;
     awt_forest *f = NULL;
     CHECK_INT(awt_forest_create(groom, &def, &f, NULL), AWT_OK);

@@ -16,20 +16,6 @@ typedef struct bytes_file {
     size_t size;
 } bytes_file;
 
-static void store_u32(unsigned char *at, uint32_t value)
-{
-    for (int i = 0; i < 4; i++) {
-        at[i] = (unsigned char)(value >> 8 * i);
-    }
-}
-
-static void store_f32(unsigned char *at, float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    store_u32(at, bits);
-}
-
 static void file_f32(bytes_file *file, float value)
 {
     store_f32(file->bytes + file->size, value);
