@@ -111,35 +111,41 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
 
 /* name, default, least, greatest, unit, meaning. struct awt_params, the checks and the names users type all
  * come from this list. Sources: the paper's §§ and PHYSICS.md's table. */
-#define AWT_PARAM_LIST(X)                                                                                           \
-    X(split_threshold, 0.30f, 0.0f, 1e9f, "m2/s2", "AWT 3.1: a node splits where |a| * radius exceeds this")        \
-    X(split_hysteresis, 0.5f, 0.0f, 1.0f, "", "merge only where |a| * radius is under this share of the threshold") \
-    X(merge_velocity, 0.08f, 0.0f, 100.0f, "m/s", "AWT 3.2: greatest relative speed of nodes that merge")           \
-    X(merge_slack, 1.5f, 1.0f, 100.0f, "", "AWT 3.2: nodes merge within this many radii of their super-node")       \
-    X(residence, 0.08f, 0.0f, 10.0f, "s", "least time between two events of one wisp")                              \
-    X(acceleration_tau, 0.040f, 0.0f, 1.0f, "s", "time constant of the filtered acceleration")                      \
-    X(offset_relaxation, 1.5f, 0.0f, 1000.0f, "s",                                                                  \
-      "merged offsets return to rest with this time constant; 0: frozen (AWT 3.2)")                                 \
-    X(length_relaxation, 0.15f, 0.001f, 10.0f, "s",                                                                 \
-      "link lengths changed by an event return to rest with this time constant")                                    \
-    X(style_omega, 15.0f, 0.0f, 100.0f, "rad/s", "style spring towards the rest shape; 0: none")                    \
-    X(style_damping, 0.8f, 0.0f, 10.0f, "", "damping ratio of the style spring")                                    \
-    X(rest_gravity, 1.0f, 0.0f, 1.0f, "", "share of gravity that the rest shape already carries")                   \
-    X(drag, 0.6f, 0.0f, 100.0f, "1/s", "drag towards the air, which moves with the head plus the wind")             \
-    X(gravity_x, 0.0f, -100.0f, 100.0f, "m/s2", "gravity, world axes")                                              \
-    X(gravity_y, -9.81f, -100.0f, 100.0f, "m/s2", "gravity, world axes")                                            \
-    X(gravity_z, 0.0f, -100.0f, 100.0f, "m/s2", "gravity, world axes")                                              \
-    X(wind_x, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                   \
-    X(wind_y, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                   \
-    X(wind_z, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                   \
-    X(speed_limit, 20.0f, 0.1f, 1000.0f, "m/s", "nodes never move faster than this relative to the head")           \
-    X(settling, 2.0f, 0.0f, 100.0f, "1/s2",                                                                         \
-      "drag that comes up once head and obstacles have been still for 2 s; 0: none")                                \
-    X(links, 0.0f, 0.0f, 1.0f, "", "AWT 2.3: 0 rigid links, 1 viscous springs")                                     \
-    X(link_omega, 400.0f, 1.0f, 2000.0f, "rad/s", "spring links: frequency under the mass that hangs on each")      \
-    X(link_damping, 0.8f, 0.0f, 10.0f, "", "spring links: damping ratio")                                           \
-    X(strain_limit, 0.2f, 0.0f, 1.0f, "", "spring links: never stretched or shortened by more than this share")     \
-    X(link_iterations, 2.0f, 1.0f, 16.0f, "", "AWT 2.3: rounds of the exact rigid-link projection in a step")
+#define AWT_PARAM_LIST(X)                                                                                              \
+    X(split_threshold, 0.30f, 0.0f, 1e9f, "m2/s2", "AWT 3.1: a node splits where |a| * radius exceeds this")           \
+    X(split_hysteresis, 0.5f, 0.0f, 1.0f, "", "merge only where |a| * radius is under this share of the threshold")    \
+    X(merge_velocity, 0.08f, 0.0f, 100.0f, "m/s", "AWT 3.2: greatest relative speed of nodes that merge")              \
+    X(merge_slack, 1.5f, 1.0f, 100.0f, "", "AWT 3.2: nodes merge within this many radii of their super-node")          \
+    X(residence, 0.08f, 0.0f, 10.0f, "s", "least time between two events of one wisp")                                 \
+    X(acceleration_tau, 0.040f, 0.0f, 1.0f, "s", "time constant of the filtered acceleration")                         \
+    X(offset_relaxation, 1.5f, 0.0f, 1000.0f, "s",                                                                     \
+      "merged offsets return to rest with this time constant; 0: frozen (AWT 3.2)")                                    \
+    X(length_relaxation, 0.15f, 0.001f, 10.0f, "s",                                                                    \
+      "link lengths changed by an event return to rest with this time constant")                                       \
+    X(style_omega, 15.0f, 0.0f, 100.0f, "rad/s", "style spring towards the rest shape; 0: none")                       \
+    X(style_damping, 0.8f, 0.0f, 10.0f, "", "damping ratio of the style spring")                                       \
+    X(rest_gravity, 1.0f, 0.0f, 1.0f, "", "share of gravity that the rest shape already carries")                      \
+    X(drag, 0.6f, 0.0f, 100.0f, "1/s", "drag towards the air, which moves with the head plus the wind")                \
+    X(gravity_x, 0.0f, -100.0f, 100.0f, "m/s2", "gravity, world axes")                                                 \
+    X(gravity_y, -9.81f, -100.0f, 100.0f, "m/s2", "gravity, world axes")                                               \
+    X(gravity_z, 0.0f, -100.0f, 100.0f, "m/s2", "gravity, world axes")                                                 \
+    X(wind_x, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
+    X(wind_y, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
+    X(wind_z, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
+    X(speed_limit, 20.0f, 0.1f, 1000.0f, "m/s", "nodes never move faster than this relative to the head")              \
+    X(settling, 2.0f, 0.0f, 100.0f, "1/s2",                                                                            \
+      "drag that comes up once head and obstacles have been still for 2 s; 0: none")                                   \
+    X(links, 0.0f, 0.0f, 1.0f, "", "AWT 2.3: 0 rigid links, 1 viscous springs")                                        \
+    X(link_omega, 400.0f, 1.0f, 2000.0f, "rad/s", "spring links: frequency under the mass that hangs on each")         \
+    X(link_damping, 0.8f, 0.0f, 10.0f, "", "spring links: damping ratio")                                              \
+    X(strain_limit, 0.2f, 0.0f, 1.0f, "", "spring links: never stretched or shortened by more than this share")        \
+    X(link_iterations, 2.0f, 1.0f, 16.0f, "", "AWT 2.3: rounds of the exact rigid-link projection in a step")          \
+    X(contact, 0.0f, 0.0f, 1.0f, "", "AWT 4: 1 lets wisps touch each other, 0 does not")                               \
+    X(friction_alpha, 30.0f, 0.0f, 1000.0f, "1/s", "AWT 4.2 (1): friction between wisps, k_f = alpha * mass")          \
+    X(repulsion_omega, 30.0f, 0.0f, 300.0f, "rad/s", "AWT 4.2 (2): repulsion of crossing wisps, k_r = omega^2 * mass") \
+    X(contact_angle, 35.0f, 0.0f, 90.0f, "deg",                                                                        \
+      "AWT 4.2: wisps that cross at a greater angle than this repel each other")                                       \
+    X(relative_motion, 0.01f, 0.0f, 10.0f, "m/s", "AWT 4.1: wisps slower than this against each other do not touch")
 
 typedef struct awt_params {
 #define AWT_PARAM_FIELD(name, value, least, greatest, unit, text) float name;
@@ -309,8 +315,10 @@ typedef struct awt_step_stats {
     uint32_t splits, merges;     /* nodes split into their sub-nodes, sets of sub-nodes merged */
     uint32_t unreached_contacts; /* nodes that their link kept inside an obstacle (AWT 4.3, PHYSICS.md 7) */
     uint32_t clamped_speeds;
-    float link_error;       /* greatest |length - target| / target after the exact pass; links from 5 mm */
-    float kinetic_energy_j; /* relative to the head */
+    uint32_t contacts;          /* pairs of wisp segments in contact (AWT 4.1), summed over the steps */
+    uint32_t contacts_left_out; /* of these, those beyond the room for them, which had no effect */
+    float link_error;           /* greatest |length - target| / target after the exact pass; links from 5 mm */
+    float kinetic_energy_j;     /* relative to the head */
 } awt_step_stats;
 
 /* Longest time one awt_forest_advance goes: 60 s. */

@@ -21,14 +21,14 @@ static void dynamics_turns(awt_forest *f, const tree *t)
     }
 }
 
-/* The velocities with which the step begins, in f->next; the root's is the head's. */
+/* The velocities with which the step begins, contacts included, in f->next; the root's is the head's. */
 static void dynamics_begin(awt_forest *f, const tree *t, float dt_s)
 {
     uint32_t root = f->active_node[t->first];
     vec3 root_end = mat3_apply(f->head, f->groom->rest_position[root]);
     f->next[t->first] = vec3_scale(vec3_sub(root_end, f->position[root]), 1.0f / dt_s);
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
-        f->next[k] = f->velocity[f->active_node[k]];
+        f->next[k] = vec3_add(f->velocity[f->active_node[k]], f->active_push[k]);
     }
 }
 

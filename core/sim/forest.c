@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "sim/contact.h"
 #include "sim/embed.h"
 #include "sim/obstacle.h"
 #include "sim/rest.h"
@@ -74,6 +75,7 @@ static void forest_lay_out(awt_forest *f, arena *a)
     f->joint_up = ARENA_PUSH(a, mat3, slots);
     f->joint_far = ARENA_PUSH(a, mat3, slots);
     f->joint_push = ARENA_PUSH(a, vec3, slots);
+    contact_lay_out(f, a, slots);
 }
 
 /* Only the coarsest nodes active (§2.3), everything as the groom rests, at the head's pose. */

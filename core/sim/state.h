@@ -15,6 +15,7 @@
 #include "base/arena.h"
 #include "base/sym3.h"
 #include "groom/groom.h"
+#include "sim/grid.h"
 #include "sim/track.h"
 
 /* One AWT (§2.3): the active nodes of a top-level GC, in the slots first .. first + count - 1 of the active
@@ -100,6 +101,17 @@ struct awt_forest {
     sym3 *joint_mass; /* joint.c */
     mat3 *joint_up, *joint_far;
     vec3 *joint_push;
+
+    /* contact.c */
+    vec3 *active_push;        /* by slot: change of velocity by contacts in this sub-step */
+    vec3 *contact_velocity;   /* by slot: relative to the turning head */
+    float *contact_load;      /* by slot */
+    struct segment *segments; /* [slots]; of this sub-step, the moving ones first */
+    grid_box *segment_box;    /* [slots] */
+    struct contact *contacts; /* [contact_capacity]; pairs in contact in this sub-step */
+    uint32_t contact_capacity;
+    uint32_t contacts_left_out; /* in this sub-step: those beyond contact_capacity, which had no effect */
+    grid grid;
 };
 
 static inline vec3 state_to_head(const awt_forest *f, vec3 v)

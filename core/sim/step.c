@@ -2,6 +2,7 @@
 #include "sim/step.h"
 
 #include "sim/adapt.h"
+#include "sim/contact.h"
 #include "sim/dynamics.h"
 #include "sim/embed.h"
 #include "sim/joint.h"
@@ -81,6 +82,8 @@ void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_s
     const uint32_t trees = f->groom->info.wisp_count[0];
     track_pose before[TRACK_COUNT];
     step_pose(f, sample_us, dt_s, before);
+    stats->contacts += contact_resolve(f, dt_s);
+    stats->contacts_left_out += f->contacts_left_out;
     bool world_is_still = rest_world_is_still(f, dt_s);
     f->time_us = end_us;
     for (uint32_t t = 0; t < trees; t++) {
