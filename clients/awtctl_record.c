@@ -33,6 +33,10 @@ void play_record_print_forest(const play_record *record, FILE *file)
                 "(%.4f m)%s\n",
                 f->scale, guessed(record, 0), f->up == AWT_UP_Z ? "Z" : "Y", guessed(record, 1), f->head_x, f->head_y,
                 f->head_z, f->head_radius, f->head_radius_m, guessed(record, 2));
+        if (f->turned_degrees != 0) {
+            fprintf(file, "        turned by %g degrees about the up axis, so that the face looks along +Z (guessed)\n",
+                    f->turned_degrees);
+        }
     }
     fprintf(file, "motion  %s\n", record->motion);
 }
@@ -221,6 +225,7 @@ static void json_forest(jsonout *json, const play_record *record)
     jsonout_unsigned(json, "coarse_nodes", f->coarse_nodes);
     jsonout_unsigned(json, "levels", f->levels);
     jsonout_real(json, "head_radius_m", f->head_radius_m);
+    jsonout_real(json, "turned_degrees", f->turned_degrees);
     jsonout_unsigned(json, "build_us", f->build_us);
     json_colliders(json, f);
 }

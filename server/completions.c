@@ -41,6 +41,7 @@ static void fill_taken(struct proto_create_reply *c, const recipe *made)
     c->head_z = p->head_centre[2];
     c->head_radius = p->head_radius;
     c->head_radius_m = p->head_radius_m;
+    c->turned_degrees = p->turned_degrees;
     c->colliders.count = (uint16_t)made->collider_count;
     for (uint32_t i = 0; i < made->collider_count; i++) {
         c->colliders.items[i] = convert_collider_back(&made->colliders[i]);
