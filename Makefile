@@ -53,7 +53,7 @@ ifeq ($(config),release)
 	@ln -sf release/awtd release/awtctl release/awt-bench build/
 endif
 
-tests-binary: $(B)/tests
+tests-binary: $(B)/tests $(PROGRAMS)
 
 help:
 	@echo 'make demo      installs what is missing, builds, plays a leaning head for 10 s, leaves GLB files in build/demo'

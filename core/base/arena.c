@@ -3,7 +3,6 @@
 
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { ARENA_ALIGNMENT = 64 };
 
@@ -15,22 +14,23 @@ arena arena_counting(void)
 bool arena_init(arena *a, size_t size)
 {
     *a = (arena){0};
-    if (size > SIZE_MAX - ARENA_ALIGNMENT) {
+    if (size > SIZE_MAX - 2 * ARENA_ALIGNMENT) {
         return false;
     }
     size_t rounded = (size + ARENA_ALIGNMENT - 1) / ARENA_ALIGNMENT * ARENA_ALIGNMENT;
-    a->base = aligned_alloc(ARENA_ALIGNMENT, rounded ? rounded : ARENA_ALIGNMENT);
-    if (!a->base) {
+    a->block = calloc(1, rounded + ARENA_ALIGNMENT);
+    if (!a->block) {
         return false;
     }
-    memset(a->base, 0, rounded);
+    size_t past = (uintptr_t)a->block % ARENA_ALIGNMENT;
+    a->base = (unsigned char *)a->block + (past ? ARENA_ALIGNMENT - past : 0);
     a->size = rounded;
     return true;
 }
 
 void arena_fini(arena *a)
 {
-    free(a->base);
+    free(a->block);
     *a = (arena){0};
 }
 

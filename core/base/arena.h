@@ -9,14 +9,16 @@
 #include <stddef.h>
 
 typedef struct arena {
-    unsigned char *base; /* NULL: counting only */
+    void *block;         /* from the heap */
+    unsigned char *base; /* its first aligned byte; NULL: counting only */
     size_t size, used;
     bool overflowed; /* some request did not fit, or its size overflowed */
 } arena;
 
 /* An arena that only counts: every push returns NULL, `used` is what a real one needs. */
 arena arena_counting(void);
-/* Takes a block of `size` bytes from the heap, zeroed. False: no memory. */
+/* Takes a block of `size` bytes from the heap, zeroed (lazily where the system can: what is never touched costs only
+ * addresses). False: no memory. */
 bool arena_init(arena *a, size_t size);
 /* Accepts a zeroed arena. */
 void arena_fini(arena *a);
