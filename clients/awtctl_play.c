@@ -7,6 +7,7 @@
 #include "awtctl_play.h"
 
 #include "files.h"
+#include "motion/load.h"
 #include "progress.h"
 #include "socket.h"
 
@@ -60,23 +61,11 @@ static void play_catch_signals(void)
 static bool play_load_motion(play *p)
 {
     char text[512];
-    size_t size;
-    awt_error error;
-    const char *name = p->plan.motion;
-    if (motion_builtin(name, &p->motion)) {
-        return true;
+    bool loaded = motion_load(p->plan.motion, &p->plan.motion_options, &p->motion, text, sizeof text);
+    if (!loaded) {
+        awtctl_failed("%s", text);
     }
-    unsigned char *bytes = files_read(name, PLAY_MAX_FILE, &size, text, sizeof text);
-    if (!bytes) {
-        awtctl_failed("%s (the built-in motions are lean, jump, run and shake)", text);
-        return false;
-    }
-    awt_status status = motion_read(bytes, size, &p->plan.motion_options, &p->motion, &error);
-    free(bytes);
-    if (status != AWT_OK) {
-        awtctl_failed("%s: %s", name, error.text);
-    }
-    return status == AWT_OK;
+    return loaded;
 }
 
 static int64_t play_time_us(const play *p, size_t frame)

@@ -18,6 +18,7 @@
 #include "sim/contact.h"
 
 #include "base/trig.h"
+#include "sim/tree.h"
 
 #define CYLINDER_END_MARGIN 1.001f
 #define PARALLEL_SINE2 1e-6f
@@ -330,11 +331,12 @@ static void contact_push(awt_forest *f, uint32_t count, const contact_rule *rule
     }
 }
 
-/* No pushes, while wisps do not touch each other. */
-static void contact_clear(awt_forest *f)
+void contact_clear(awt_forest *f)
 {
+    f->contacts_left_out = 0;
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
-        for (uint32_t k = f->trees[t].first; k < f->trees[t].first + f->trees[t].count; k++) {
+        uint32_t first = f->trees[t].first, end = first + tree_capacity(f->groom, t);
+        for (uint32_t k = first; k < end; k++) {
             f->active_push[k] = (vec3){0, 0, 0};
         }
     }
@@ -343,8 +345,7 @@ static void contact_clear(awt_forest *f)
 uint32_t contact_resolve(awt_forest *f, float dt_s)
 {
     if (f->params.contact < 0.5f) {
-        contact_clear(f);
-        return 0;
+        return 0; /* and no slot has a push: contact_clear */
     }
     const contact_rule rule = contact_rule_of(&f->params, dt_s);
     const float moving_speed2 = 0.25f * rule.least_speed2;

@@ -11,4 +11,7 @@ void contact_lay_out(awt_forest *f, arena *a, size_t slots);
  * friction and repulsion change of every active node's velocity in this sub-step. Returns how many pairs. */
 uint32_t contact_resolve(awt_forest *f, float dt_s);
 
+/* Takes all pushes away, those of slots that may be used again included: when contact may have been turned off. */
+void contact_clear(awt_forest *f);
+
 #endif

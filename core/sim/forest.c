@@ -188,6 +188,7 @@ awt_status awt_forest_set_params(awt_forest *f, const awt_params *params, awt_er
     }
     f->params = *params;
     rest_wake_all(f);
+    contact_clear(f);
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
         tree_rebuild(f, t); /* the style's targets depend on them */
     }

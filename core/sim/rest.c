@@ -49,35 +49,46 @@ float rest_drag(const awt_forest *f)
     return drag < 0.0f ? 0.0f : drag > REST_DRAG_MOST ? REST_DRAG_MOST : drag;
 }
 
-void rest_carry(awt_forest *f, const tree *t, mat3 turn)
+void rest_carry(awt_forest *f, dquat from, dquat to, bool sleepers_only)
 {
-    for (uint32_t k = t->first; k < t->first + t->count; k++) {
-        uint32_t node = f->active_node[k];
-        f->position[node] = mat3_apply(turn, f->position[node]);
-        f->velocity[node] = mat3_apply(turn, f->velocity[node]);
-        f->acceleration[node] = mat3_apply(turn, f->acceleration[node]);
+    mat3 turn = mat3_of_quat(quat_of_dquat(dquat_unit(dquat_mul(to, dquat_conjugate(from)))));
+    for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
+        const tree *tr = &f->trees[t];
+        if (sleepers_only && !tr->asleep) {
+            continue;
+        }
+        for (uint32_t k = tr->first; k < tr->first + tr->count; k++) {
+            uint32_t node = f->active_node[k];
+            f->position[node] = mat3_apply(turn, f->position[node]);
+            f->velocity[node] = mat3_apply(turn, f->velocity[node]);
+            f->acceleration[node] = mat3_apply(turn, f->acceleration[node]);
+        }
     }
 }
 
-bool rest_sleeps_on(awt_forest *f, tree *t, bool world_is_still, const track_pose *head_before, float dt_s)
+void rest_sleepers(awt_forest *f, bool world_is_still, dquat from)
 {
-    if (!t->asleep) {
-        return false;
+    dquat to = f->pose[TRACK_HEAD].orientation;
+    if (world_is_still) {
+        if (from.x != to.x || from.y != to.y || from.z != to.z || from.w != to.w) {
+            rest_carry(f, from, to, true);
+        }
+        return;
     }
-    if (!world_is_still) {
-        t->asleep = false;
-        t->quiet_s = 0.0f;
-        return false;
+    for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
+        if (f->trees[t].asleep) {
+            f->trees[t].asleep = false;
+            f->trees[t].quiet_s = 0.0f;
+        }
     }
-    dquat from = head_before->orientation, to = f->pose[TRACK_HEAD].orientation;
-    if (from.x != to.x || from.y != to.y || from.z != to.z || from.w != to.w) {
-        rest_carry(f, t, mat3_of_quat(quat_of_dquat(dquat_unit(dquat_mul(to, dquat_conjugate(from))))));
-    }
+}
+
+void rest_doze(awt_forest *f, tree *t, float dt_s)
+{
     if (t->quiet_s < REST_RELAXING * f->params.offset_relaxation) {
         embed_relax(f, t, dt_s);
         t->quiet_s += dt_s;
     }
-    return true;
 }
 
 void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s)

@@ -13,15 +13,18 @@ bool rest_world_is_still(awt_forest *f, float dt_s);
  * obstacle's edge, splitting and merging, would otherwise do so for ever. */
 float rest_drag(const awt_forest *f);
 
-/* True if the tree sleeps through this sub-step: it is carried with the head, and its offsets finish relaxing. Wakes it
- * where the world is not still. */
-bool rest_sleeps_on(awt_forest *f, tree *t, bool world_is_still, const track_pose *head_before, float dt_s);
+/* What a still world lets sleep goes on sleeping, carried with the head from its orientation `from`; any other wakes.
+ */
+void rest_sleepers(awt_forest *f, bool world_is_still, dquat from);
+
+/* A sleeping tree's sub-step: its offsets finish relaxing. */
+void rest_doze(awt_forest *f, tree *t, float dt_s);
 
 /* After the tree's dynamics: counts how long it has been quiet, and lets it fall asleep once all of it has merged. */
 void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s);
 
-/* Turns the tree's state with the head as one solid. */
-void rest_carry(awt_forest *f, const tree *t, mat3 turn);
+/* Turns the state of all trees, or of those that sleep, as one solid, as the head turns from `from` to `to`. */
+void rest_carry(awt_forest *f, dquat from, dquat to, bool sleepers_only);
 
 void rest_wake_all(awt_forest *f);
 

@@ -20,15 +20,6 @@ void step_orient(awt_forest *f)
     f->head = mat3_of_quat(quat_of_dquat(f->pose[TRACK_HEAD].orientation));
 }
 
-/* The state turns with the head as one solid; in a frame that rides on the head there is nothing else to do. */
-static void step_carry(awt_forest *f, dquat from, dquat to)
-{
-    mat3 turn = mat3_of_quat(quat_of_dquat(dquat_unit(dquat_mul(to, dquat_conjugate(from)))));
-    for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
-        rest_carry(f, &f->trees[t], turn);
-    }
-}
-
 /* Poses at the end of the sub-step, and what their change means in the moving frame. */
 static void step_pose(awt_forest *f, double sample_us, float dt_s, track_pose before[TRACK_COUNT])
 {
@@ -38,7 +29,8 @@ static void step_pose(awt_forest *f, double sample_us, float dt_s, track_pose be
     dvec3 velocity = dvec3_scale(dvec3_sub(head->position, head_before->position), 1.0 / (double)dt_s);
     dvec3 change = dvec3_sub(velocity, f->frame_velocity);
     if (teleported || dvec3_length(change) > STEP_TELEPORT_M_S) {
-        step_carry(f, head_before->orientation, head->orientation);
+        /* in a frame that rides on the head there is nothing else to do */
+        rest_carry(f, head_before->orientation, head->orientation, false);
         memcpy(before, f->pose, sizeof f->pose);
         velocity = change = (dvec3){0, 0, 0};
     }
@@ -85,9 +77,11 @@ void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_s
     stats->contacts += contact_resolve(f, dt_s);
     stats->contacts_left_out += f->contacts_left_out;
     bool world_is_still = rest_world_is_still(f, dt_s);
+    rest_sleepers(f, world_is_still, before[TRACK_HEAD].orientation);
     f->time_us = end_us;
     for (uint32_t t = 0; t < trees; t++) {
-        if (rest_sleeps_on(f, &f->trees[t], world_is_still, &before[TRACK_HEAD], dt_s)) {
+        if (f->trees[t].asleep) {
+            rest_doze(f, &f->trees[t], dt_s);
             continue;
         }
         step_tree(f, t, dt_s, stats);

@@ -3,15 +3,14 @@
 
 #include "base/options.h"
 #include "base/version.h"
-#include "files.h"
+#include "motion/load.h"
 #include "motion/timeunit.h"
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { PLAN_MAX_MOTION_FILE = 512 << 20, PLAN_MAX_SECONDS = 3600, PLAN_DEFAULT_POINTS = 16 };
+enum { PLAN_MAX_SECONDS = 3600, PLAN_DEFAULT_POINTS = 16 };
 
 /* What the command line says before it is checked. */
 typedef struct paper_words {
@@ -100,18 +99,7 @@ static bool plan_motion_words(paper_words *words)
 static bool plan_motion(const motion_options *options, paper_plan *plan)
 {
     char text[512];
-    size_t size;
-    awt_error error;
-    if (motion_builtin(plan->motion_name, &plan->clip)) {
-        return true;
-    }
-    unsigned char *bytes = files_read(plan->motion_name, PLAN_MAX_MOTION_FILE, &size, text, sizeof text);
-    if (!bytes) {
-        return plan_wrong("%s (the built-in motions are lean, jump, run and shake)", text);
-    }
-    awt_status status = motion_read(bytes, size, options, &plan->clip, &error);
-    free(bytes);
-    return status == AWT_OK || plan_wrong("%s: %s", plan->motion_name, error.text);
+    return motion_load(plan->motion_name, options, &plan->clip, text, sizeof text) || plan_wrong("%s", text);
 }
 
 /* The whole clip, or as long as asked for. */
