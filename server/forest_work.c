@@ -5,6 +5,7 @@
 
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- making -------------------------------------------------------------------------------------------------- */
 
@@ -67,15 +68,11 @@ static awt_status make_forest(forest_work *w, awt_error *error)
     def.start = r->start;
     if (r->own_colliders) {
         def.collider_count = r->collider_count;
+        memcpy(def.colliders, r->colliders, sizeof def.colliders);
+    } else {
+        r->collider_count = def.collider_count;
+        memcpy(r->colliders, def.colliders, sizeof r->colliders);
     }
-    for (uint32_t i = 0; i < def.collider_count; i++) {
-        if (r->own_colliders) {
-            def.colliders[i] = r->colliders[i];
-        } else {
-            r->colliders[i] = def.colliders[i];
-        }
-    }
-    r->collider_count = def.collider_count;
     return awt_forest_create(w->groom, &def, &w->forest, error);
 }
 

@@ -106,7 +106,7 @@ static void forest_rest(awt_forest *f)
 }
 
 /* The style frequency at which gravity alone would bend every joint of this groom alike: short segments need stiffer
- * ones. The built-in styles' own values lie on the same curve. */
+ * ones. The built-in styles' own values lie near this curve. */
 static float style_omega_of(const awt_groom *groom)
 {
     float segment_m = (float)groom->info.median_strand_m / (float)(groom->info.sections - 1);
