@@ -69,19 +69,13 @@ static bool read_kind(const char *text, uint8_t *kind)
 
 static bool read_param(const char *text, play_plan *plan)
 {
-    const char *equals = strchr(text, '=');
-    size_t length = equals ? (size_t)(equals - text) : 0;
+    play_param *param = &plan->params[plan->param_count];
     double value;
-    if (length == 0 || length >= sizeof plan->params[0].name) {
+    if (!options_split_assignment(text, param->name, sizeof param->name, &value) || fabs(value) > 1e30) {
         return false;
     }
-    const char *number = equals + 1;
-    if (!read_number(&number, '\0', &value) || fabs(value) > 1e30) {
-        return false;
-    }
-    memcpy(plan->params[plan->param_count].name, text, length);
-    plan->params[plan->param_count].name[length] = '\0';
-    plan->params[plan->param_count++].value = (float)value;
+    param->value = (float)value;
+    plan->param_count++;
     return true;
 }
 

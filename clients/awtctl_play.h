@@ -10,6 +10,11 @@
 
 enum { PLAY_MAX_PARAMS = 64 };
 
+typedef struct play_param {
+    char name[33];
+    float value;
+} play_param;
+
 typedef struct play_plan {
     awtctl_connection connection;
     const char *style, *groom; /* one of them is NULL */
@@ -26,10 +31,7 @@ typedef struct play_plan {
     const char *json;        /* file, "-" or NULL */
     bool quiet, check;
     size_t param_count;
-    struct {
-        char name[33];
-        float value;
-    } params[PLAY_MAX_PARAMS];
+    play_param params[PLAY_MAX_PARAMS];
 } play_plan;
 
 /* Fills `plan`, whose texts point into argv. False: the program ends here with *code. */

@@ -146,6 +146,22 @@ void options_help(const option_program *program, FILE *file)
     fprintf(file, "  %-26s %s\n  %-26s %s\n", "--help", "this text", "--version", "the version");
 }
 
+bool options_split_assignment(const char *text, char *name, size_t name_size, double *value)
+{
+    size_t length = strcspn(text, "=");
+    if (length == 0 || length >= name_size || text[length] != '=' || text[length + 1] == '\0') {
+        return false;
+    }
+    char *end;
+    *value = strtod(text + length + 1, &end);
+    if (*end != '\0' || !isfinite(*value)) {
+        return false;
+    }
+    memcpy(name, text, length);
+    name[length] = '\0';
+    return true;
+}
+
 bool options_split_address(const char *text, char *host, size_t host_size, char *port, size_t port_size)
 {
     const char *colon = strrchr(text, ':');

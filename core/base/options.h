@@ -50,6 +50,9 @@ option_result options_parse(const option_program *program, int count, char *cons
 /* The help text, with defaults as they stand in the values. */
 void options_help(const option_program *program, FILE *file);
 
+/* Splits "NAME=NUMBER". False: not of that form, the name longer than `name_size` - 1, or the number not finite. */
+bool options_split_assignment(const char *text, char *name, size_t name_size, double *value);
+
 /* Splits "HOST:PORT", "[IPV6]:PORT" or ":PORT" (host empty then). False: not of that form, or too long. */
 bool options_split_address(const char *text, char *host, size_t host_size, char *port, size_t port_size);
 

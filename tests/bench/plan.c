@@ -15,6 +15,7 @@ enum { PLAN_MAX_SECONDS = 3600, PLAN_DEFAULT_POINTS = 16 };
 /* What the command line says before it is checked. */
 typedef struct paper_words {
     const char *styles, *links, *up, *time_unit;
+    option_list params;
     motion_options motion;
     long long strands, points, workers;
     double seconds;
@@ -83,6 +84,26 @@ static bool plan_links(const char *name, paper_plan *plan)
     return true;
 }
 
+/* "name=number", over the styles' own. */
+static bool plan_params(const option_list *list, paper_plan *plan)
+{
+    awt_params checked = awt_params_default();
+    for (size_t i = 0; i < list->count; i++) {
+        paper_param *p = &plan->params[i];
+        double value;
+        awt_error error;
+        if (!options_split_assignment(list->items[i], p->name, sizeof p->name, &value)) {
+            return plan_wrong("--param takes name=number, not \"%s\" (awtctl styles lists the names)", list->items[i]);
+        }
+        p->value = (float)value;
+        if (awt_params_set(&checked, p->name, p->value, &error) != AWT_OK) {
+            return plan_wrong("%s", error.text);
+        }
+    }
+    plan->param_count = list->count;
+    return true;
+}
+
 static bool plan_motion_words(paper_words *words)
 {
     if (words->up && strcmp(words->up, "y") != 0 && strcmp(words->up, "z") != 0) {
@@ -130,6 +151,7 @@ static bool plan_options(int argc, char *const *argv, paper_words *words, paper_
         {"time-unit", OPTION_TEXT, "U", &words->time_unit, 0, 0, "of a CSV: s, ms, us, 100ns, ns; else guessed"},
         {"seconds", OPTION_REAL, "S", &words->seconds, 0, PLAN_MAX_SECONDS, "simulated time; 0: the whole clip"},
         {"theta", OPTION_REAL, "T", &plan->theta, -1, 1e9, "split threshold of all styles, m2/s2; -1: each its own"},
+        {"param", OPTION_LIST, "NAME=VALUE", &words->params, 0, 0, "a parameter of all styles; may be given again"},
         {"links", OPTION_TEXT, "KIND", &words->links, 0, 0, "rigid or springs; without it as each style has them"},
         {"workers", OPTION_INTEGER, "N", &words->workers, 1, BENCH_MAX_WORKERS, "heads stepped at once, a thread each"},
         {"json", OPTION_OPTIONAL_TEXT, "FILE", &plan->json, 0, 0, "all figures as JSON, to FILE or stdout"},
@@ -169,7 +191,7 @@ bool paper_plan_read(int argc, char *const *argv, paper_plan *plan, int *code)
     plan->strands = (uint32_t)words.strands;
     plan->points = (uint32_t)words.points;
     plan->workers = (uint32_t)words.workers;
-    if (plan_styles(words.styles, plan) && plan_links(words.links, plan) && plan_motion_words(&words) &&
+    if (plan_styles(words.styles, plan) && plan_links(words.links, plan) && plan_params(&words.params, plan) && plan_motion_words(&words) &&
         plan_motion(&words.motion, plan) && plan_length(words.seconds, plan)) {
         return true;
     }
@@ -190,6 +212,9 @@ awt_params paper_plan_params(const paper_plan *plan, const awt_style *style)
     }
     if (plan->links >= 0) {
         awt_params_set(&params, "links", (float)plan->links, NULL);
+    }
+    for (size_t i = 0; i < plan->param_count; i++) {
+        awt_params_set(&params, plan->params[i].name, plan->params[i].value, NULL);
     }
     return params;
 }
