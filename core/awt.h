@@ -133,14 +133,16 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
     X(wind_y, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
     X(wind_z, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
     X(speed_limit, 20.0f, 0.1f, 1000.0f, "m/s", "nodes never move faster than this relative to the head")              \
-    X(settling, 2.0f, 0.0f, 100.0f, "1/s2",                                                                            \
-      "drag that comes up once head and obstacles have been still for 2 s; 0: none")                                   \
+    X(settling, 5.0f, 0.0f, 1000.0f, "1/s2",                                                                           \
+      "drag that comes up once head and obstacles have been still for 1.5 s; 0: none")                                 \
     X(links, 0.0f, 0.0f, 1.0f, "", "AWT 2.3: 0 rigid links, 1 viscous springs")                                        \
     X(link_omega, 400.0f, 1.0f, 2000.0f, "rad/s", "spring links: frequency under the mass that hangs on each")         \
     X(link_damping, 0.8f, 0.0f, 10.0f, "", "spring links: damping ratio")                                              \
     X(strain_limit, 0.2f, 0.0f, 1.0f, "", "spring links: never stretched or shortened by more than this share")        \
     X(link_iterations, 2.0f, 1.0f, 16.0f, "", "AWT 2.3: rounds of the exact rigid-link projection in a step")          \
-    X(contact, 0.0f, 0.0f, 1.0f, "", "AWT 4: 1 lets wisps touch each other, 0 does not")                               \
+    X(contact, 1.0f, 0.0f, 1.0f, "", "AWT 4: 1 lets wisps touch each other, 0 does not")                               \
+    X(contact_packing, 1.0f, 0.0f, 1.0f, "",                                                                           \
+      "0: wisps touch with all of their radius (AWT 4.1); 1: with what their neighbours at rest leave room for")       \
     X(friction_alpha, 30.0f, 0.0f, 1000.0f, "1/s", "AWT 4.2 (1): friction between wisps, k_f = alpha * mass")          \
     X(repulsion_omega, 30.0f, 0.0f, 300.0f, "rad/s", "AWT 4.2 (2): repulsion of crossing wisps, k_r = omega^2 * mass") \
     X(contact_angle, 35.0f, 0.0f, 90.0f, "deg",                                                                        \
@@ -342,7 +344,7 @@ uint64_t awt_forest_hash(const awt_forest *forest);
 /* ---- exact state: snapshots and recordings ----------------------------------------------------------------------- */
 
 /* Goes up whenever the same inputs give other bits than before, or the state holds more than before. */
-#define AWT_PHYSICS_VERSION 1
+#define AWT_PHYSICS_VERSION 2
 
 /* Writes everything that the forest's future depends on, its groom included: restored, in another process or on
  * another machine, it goes on to the bit as if it had never stopped, poses that wait included. *size is always set to

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/error.h"
+#include "groom/pack.h"
 #include "groom/plan.h"
 #include "sim/evaluate.h"
 
@@ -52,16 +53,15 @@ static bool take_memory(groom_draft *build)
     return true;
 }
 
-/* The power of two nearest to what gives the whole hair COARSE_NODE_KG a coarse node. */
+/* The least power of two that gives the whole hair COARSE_NODE_KG a coarse node or more. */
 static void choose_mass_unit(awt_groom *groom)
 {
     const double section_strands = (double)groom->info.strand_count * groom->info.sections;
     const double wanted = COARSE_NODE_KG * groom->info.coarse_nodes / section_strands;
     double unit = 1.0;
-    while (unit > wanted) {
+    while (0.5 * unit >= wanted) {
         unit *= 0.5;
     }
-    unit = wanted * wanted > 2.0 * unit * unit ? 2.0 * unit : unit; /* past the geometric mean of the two */
     groom->mass_unit_kg = (float)unit;
     groom->info.mass_kg = section_strands * unit;
 }
@@ -136,6 +136,9 @@ awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
     }
     hierarchy_build(&build);
     fit_wisps(&build);
+    if (!pack_wisps(build.groom)) {
+        goto fail;
+    }
     bind_strands(&build);
     choose_mass_unit(build.groom);
     describe_lengths(&build);

@@ -31,6 +31,7 @@ static void groom_lay_out(awt_groom *groom, arena *memory)
     groom->gc_strand_count = ARENA_PUSH(memory, uint32_t, gcs);
     groom->rest_position = ARENA_PUSH(memory, vec3, nodes);
     groom->rest_radius = ARENA_PUSH(memory, float, nodes);
+    groom->rest_room = ARENA_PUSH(memory, float, nodes);
     groom->rest_frame = ARENA_PUSH(memory, quat, groom->info.finest_nodes);
     groom->gc_strand_first = ARENA_PUSH(memory, uint32_t, (size_t)groom->info.wisp_count[groom->info.levels - 1] + 1);
     groom->strand_station = ARENA_PUSH(memory, uint16_t, points);

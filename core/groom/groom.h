@@ -28,6 +28,7 @@ struct awt_groom {
     /* nodes, [gc_count * sections] */
     vec3 *rest_position; /* head frame; a super-node stands at the centre of mass of its sub-nodes */
     float *rest_radius;  /* contains the sub-nodes' sections */
+    float *rest_room;    /* of it, what the neighbours leave room for (pack.h); a root section's: 0 */
 
     float mass_unit_kg; /* a power of two; a node weighs gc_strand_count * mass_unit_kg, exactly */
 

@@ -1,5 +1,5 @@
 /* style.c: the built-in styles, each in one entry: what it is, how large its hierarchy (the sizes of AWT §5.2 to
- * within 2 %), how it moves (PHYSICS.md's table) and how it looks. */
+ * within 2 %), how it moves and how it looks. */
 #include "groom/look.h"
 
 #include <string.h>
@@ -16,10 +16,10 @@ typedef struct style_entry {
             : SAME_FIELD(name, style_omega)   ? (omega)     \
             : SAME_FIELD(name, links)         ? (springs)   \
                                               : (value),
-#define SHORT_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.20f, 30.0f, 0.0f)
-#define SHORT_CURLY_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.30f, 20.0f, 1.0f)
-#define LONG_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.30f, 15.0f, 0.0f)
-#define LONG_CURLY_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.40f, 15.0f, 1.0f)
+#define SHORT_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.26f, 30.0f, 0.0f)
+#define SHORT_CURLY_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.50f, 20.0f, 1.0f)
+#define LONG_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.50f, 20.0f, 0.0f)
+#define LONG_CURLY_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.50f, 15.0f, 1.0f)
 
 static const style_entry style_table[] = {
     {.style = {.name = "short",
@@ -27,7 +27,7 @@ static const style_entry style_table[] = {
                .levels = 2,
                .sections = 5,
                .finest_wisps = 1030,
-               .top_wisps = 178,
+               .top_wisps = 120,
                .points_per_strand = 12,
                .params = {AWT_PARAM_LIST(SHORT_PARAM)}},
      .look = {.length_m = 0.060,
@@ -49,7 +49,7 @@ static const style_entry style_table[] = {
                .levels = 2,
                .sections = 6,
                .finest_wisps = 818,
-               .top_wisps = 140,
+               .top_wisps = 100,
                .points_per_strand = 32,
                .params = {AWT_PARAM_LIST(SHORT_CURLY_PARAM)}},
      .look = {.length_m = 0.070,
@@ -73,7 +73,7 @@ static const style_entry style_table[] = {
                .levels = 3,
                .sections = 12,
                .finest_wisps = 505,
-               .top_wisps = 56,
+               .top_wisps = 48,
                .points_per_strand = 20,
                .params = {AWT_PARAM_LIST(LONG_PARAM)}},
      .look = {.length_m = 0.48,
@@ -97,7 +97,7 @@ static const style_entry style_table[] = {
                .levels = 3,
                .sections = 16,
                .finest_wisps = 616,
-               .top_wisps = 68,
+               .top_wisps = 56,
                .points_per_strand = 64,
                .params = {AWT_PARAM_LIST(LONG_CURLY_PARAM)}},
      .look = {.length_m = 0.40,

@@ -157,7 +157,7 @@ adapt_counts adapt_tree(awt_forest *f, uint32_t t)
             }
             if (!baked) {
                 embed_bake(f, &f->trees[t]);
-                baked = true;
+                f->trees[t].loose = baked = true;
             }
             if (merges) {
                 merge_apply(f, g, &super);

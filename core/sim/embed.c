@@ -101,31 +101,56 @@ void embed_refer(awt_forest *f, const tree *t)
     }
 }
 
-void embed_relax(awt_forest *f, const tree *t, float dt_s)
+static bool quat_near(quat a, quat b)
 {
-    if (f->params.offset_relaxation <= 0.0f) {
+    float sign = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0 ? -1.0f : 1.0f;
+    return fabsf(a.x - sign * b.x) < EMBED_SETTLED_TURN && fabsf(a.y - sign * b.y) < EMBED_SETTLED_TURN &&
+           fabsf(a.z - sign * b.z) < EMBED_SETTLED_TURN && fabsf(a.w - sign * b.w) < EMBED_SETTLED_TURN;
+}
+
+/* What hangs on slot k goes by `share` towards rest. True: all of it was near. */
+static bool embed_relax_slot(awt_forest *f, uint32_t k, float share)
+{
+    const awt_groom *groom = f->groom;
+    const uint32_t sections = groom->info.sections, node = f->active_node[k], i = node % sections;
+    quat turn = chord_turn(f, k, f->active_rest_chord[k], f->reference[node]);
+    mat3 turned = mat3_of_quat(turn);
+    bool near = fabsf(groom->rest_radius[node] - f->radius[node]) < EMBED_SETTLED_M;
+    f->radius[node] += (groom->rest_radius[node] - f->radius[node]) * share;
+    uint32_t lo = node / sections, hi = lo + 1;
+    while (groom_descend(groom, &lo, &hi)) {
+        for (uint32_t s = lo; s < hi; s++) {
+            uint32_t n = s * sections + i;
+            vec3 rest = vec3_sub(groom->rest_position[n], groom->rest_position[groom->gc_super[s] * sections + i]);
+            vec3 way = vec3_sub(mat3_apply(turned, rest), f->offset[n]);
+            near = near && vec3_dot(way, way) < EMBED_SETTLED_M * EMBED_SETTLED_M;
+            f->offset[n] = vec3_mad(f->offset[n], way, share);
+        }
+    }
+    for (uint32_t s = lo; s < hi; s++) {
+        uint32_t n = finest_index(groom, s * sections + i);
+        quat rest = quat_mul(turn, groom->rest_frame[n]);
+        near = near && quat_near(f->frame[n], rest);
+        f->frame[n] = quat_blend(f->frame[n], rest, share);
+    }
+    return near;
+}
+
+void embed_relax(awt_forest *f, tree *t, float dt_s)
+{
+    if (f->params.offset_relaxation <= 0.0f || !t->loose) {
         return;
     }
-    const awt_groom *groom = f->groom;
-    const uint32_t sections = groom->info.sections;
     float share = relaxation_share(dt_s, f->params.offset_relaxation);
+    bool near = true;
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
-        uint32_t node = f->active_node[k], g = node / sections, i = node % sections;
-        quat turn = chord_turn(f, k, f->active_rest_chord[k], f->reference[node]);
-        mat3 turned = mat3_of_quat(turn);
-        f->radius[node] += (groom->rest_radius[node] - f->radius[node]) * share;
-        uint32_t lo = g, hi = g + 1;
-        while (groom_descend(groom, &lo, &hi)) {
-            for (uint32_t s = lo; s < hi; s++) {
-                uint32_t n = s * sections + i;
-                vec3 rest = vec3_sub(groom->rest_position[n], groom->rest_position[groom->gc_super[s] * sections + i]);
-                f->offset[n] = vec3_lerp(f->offset[n], mat3_apply(turned, rest), share);
-            }
+        near = embed_relax_slot(f, k, share) && near;
+    }
+    if (near) {
+        for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
+            embed_relax_slot(f, k, 1.0f);
         }
-        for (uint32_t s = lo; s < hi; s++) {
-            uint32_t n = finest_index(groom, s * sections + i);
-            f->frame[n] = quat_blend(f->frame[n], quat_mul(turn, groom->rest_frame[n]), share);
-        }
+        t->loose = false;
     }
 }
 

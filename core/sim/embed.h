@@ -27,8 +27,11 @@ void embed_measure(awt_forest *f, const tree *t);
  * tree_rebuild. */
 void embed_refer(awt_forest *f, const tree *t);
 
-/* Offsets, frames and radii go towards rest (params.offset_relaxation; PHYSICS.md: frozen offsets flatten the style).
- */
-void embed_relax(awt_forest *f, const tree *t, float dt_s);
+/* Offsets, frames and radii of a loose tree go towards rest (params.offset_relaxation; PHYSICS.md: frozen offsets
+ * flatten the style), and what has come nearer than EMBED_SETTLED arrives: the tree is not loose any more. */
+void embed_relax(awt_forest *f, tree *t, float dt_s);
+
+#define EMBED_SETTLED_M 1e-5f
+#define EMBED_SETTLED_TURN 1e-4f /* of a quaternion's components: 0.01 degrees */
 
 #endif

@@ -186,12 +186,12 @@ void joint_resolve(awt_forest *f, const tree *t, float dt_s)
 }
 
 /* At rest a link carries, along itself, its node's weight and what its children's links carry; the rest falls to the
- * style (params.rest_gravity), so that the rest shape is in equilibrium as it was drawn. It is a dead load in the head
- * frame: a load that turned with the segment would feed energy into hair that hangs over (long hair then never came to
- * rest). */
+ * style (params.rest_gravity), so that the rest shape is in equilibrium as it was drawn: on an upright head, where down
+ * is -Y. It is a dead load in the head frame: a load that turned with the segment would feed energy into hair that
+ * hangs over (long hair then never came to rest). */
 static void measure_preload(awt_forest *f, const tree *t)
 {
-    vec3 gravity = {f->params.gravity_x, f->params.gravity_y, f->params.gravity_z};
+    vec3 gravity = {0, -vec3_length(vec3_make(f->params.gravity_x, f->params.gravity_y, f->params.gravity_z)), 0};
     vec3 *load = f->joint_push; /* working memory, free between steps */
     for (uint32_t k = t->first; k < t->first + t->count; k++) {
         load[k] = vec3_scale(gravity, f->active_mass[k]);

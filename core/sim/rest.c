@@ -1,22 +1,25 @@
 /* rest.c: see rest.h.
  *
- * A tree is quiet while no node of it moves faster than REST_SPEED against the head and the world is still; when it has
+ * A tree is quiet while no node of it moves faster than a centimetre a second against the head and the world is still
+ * (the longer it has been still, the less is asked: hair that creeps back over a shoulder would take a minute); when it
+ * has
  * been quiet for half a second and is merged to its coarsest nodes, it sleeps: its velocities become exactly zero and
- * only the head carries it. Its offsets go on relaxing for a while, so that it sleeps in style. */
+ * only the head carries it. Its offsets go on relaxing until they have arrived, so that it sleeps in style. */
 #include "sim/rest.h"
 
 #include "sim/embed.h"
 
 #define REST_SPEED_M_S 0.01f
+#define REST_PATIENCE_S 1.0f        /* from here on more speed is quiet */
 #define REST_HEAD_SPIN 0.02f        /* rad/s */
 #define REST_HEAD_ACCELERATION 0.1f /* m/s2 */
 #define REST_OBSTACLE_SPEED_M_S 0.002f
 /* 1 - |q . q0| of a head that has turned by 0.01 rad, however slowly, since it last moved. */
 #define REST_TURNED 1.25e-5
-#define REST_DRAG_AFTER_S 2.0f
-#define REST_DRAG_MOST 30.0f
-/* Relaxation goes on for so many of its time constants. */
-#define REST_RELAXING 4.0f
+#define REST_DRAG_AFTER_S 1.5f
+#define REST_DRAG_MOST 300.0f
+/* A sleeper's offsets relax every so often. */
+#define REST_DOZE_S 0.04f
 
 static bool obstacles_are_still(const awt_forest *f)
 {
@@ -28,6 +31,13 @@ static bool obstacles_are_still(const awt_forest *f)
         }
     }
     return true;
+}
+
+/* Speed below which a node is quiet. */
+static float quiet_speed(const awt_forest *f)
+{
+    float speed = REST_SPEED_M_S * f->still_s / REST_PATIENCE_S;
+    return speed < REST_SPEED_M_S ? REST_SPEED_M_S : speed > REST_WAKING_SPEED_M_S ? REST_WAKING_SPEED_M_S : speed;
 }
 
 bool rest_world_is_still(awt_forest *f, float dt_s)
@@ -66,6 +76,12 @@ void rest_carry(awt_forest *f, dquat from, dquat to, bool sleepers_only)
     }
 }
 
+static void tree_wake(tree *t)
+{
+    t->asleep = false;
+    t->quiet_s = 0.0f;
+}
+
 void rest_sleepers(awt_forest *f, bool world_is_still, dquat from)
 {
     dquat to = f->pose[TRACK_HEAD].orientation;
@@ -77,34 +93,44 @@ void rest_sleepers(awt_forest *f, bool world_is_still, dquat from)
     }
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
         if (f->trees[t].asleep) {
-            f->trees[t].asleep = false;
-            f->trees[t].quiet_s = 0.0f;
+            tree_wake(&f->trees[t]);
         }
     }
 }
 
 void rest_doze(awt_forest *f, tree *t, float dt_s)
 {
-    if (t->quiet_s < REST_RELAXING * f->params.offset_relaxation) {
-        embed_relax(f, t, dt_s);
-        t->quiet_s += dt_s;
+    t->doze_s += dt_s;
+    if (t->doze_s >= REST_DOZE_S) {
+        embed_relax(f, t, t->doze_s);
+        t->doze_s = 0.0f;
     }
 }
 
 void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s)
 {
     bool quiet = world_is_still;
+    float speed = quiet_speed(f);
     for (uint32_t k = t->first; quiet && k < t->first + t->count; k++) {
         vec3 v = f->velocity[f->active_node[k]];
-        quiet = vec3_dot(v, v) < REST_SPEED_M_S * REST_SPEED_M_S;
+        quiet = vec3_dot(v, v) < speed * speed;
     }
     t->quiet_s = quiet ? t->quiet_s + dt_s : 0.0f;
     if (!rest_is_settled(t) || t->count > f->groom->info.sections) {
         return;
     }
     t->asleep = true;
+    t->doze_s = 0.0f;
     for (uint32_t k = t->first; k < t->first + t->count; k++) {
         f->velocity[f->active_node[k]] = f->acceleration[f->active_node[k]] = (vec3){0, 0, 0};
+    }
+}
+
+void rest_wake(awt_forest *f, uint32_t slot)
+{
+    tree *t = &f->trees[f->groom->gc_tree[f->active_node[slot] / f->groom->info.sections]];
+    if (t->asleep) {
+        tree_wake(t);
     }
 }
 
@@ -112,7 +138,6 @@ void rest_wake_all(awt_forest *f)
 {
     f->still_s = 0.0f;
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
-        f->trees[t].asleep = false;
-        f->trees[t].quiet_s = 0.0f;
+        tree_wake(&f->trees[t]);
     }
 }

@@ -17,7 +17,7 @@ float rest_drag(const awt_forest *f);
  */
 void rest_sleepers(awt_forest *f, bool world_is_still, dquat from);
 
-/* A sleeping tree's sub-step: its offsets finish relaxing. */
+/* A sleeping tree's sub-step: its offsets go on relaxing. */
 void rest_doze(awt_forest *f, tree *t, float dt_s);
 
 /* After the tree's dynamics: counts how long it has been quiet, and lets it fall asleep once all of it has merged. */
@@ -27,6 +27,12 @@ void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s);
 void rest_carry(awt_forest *f, dquat from, dquat to, bool sleepers_only);
 
 void rest_wake_all(awt_forest *f);
+
+/* What moves faster than this against a sleeping tree wakes it. */
+#define REST_WAKING_SPEED_M_S 0.05f
+
+/* Wakes the tree of an active slot. */
+void rest_wake(awt_forest *f, uint32_t slot);
 
 /* Has the tree been quiet for so long that what keeps its wisps apart is no motion? */
 static inline bool rest_is_settled(const tree *t)

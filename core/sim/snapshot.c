@@ -2,15 +2,16 @@
  *
  * What goes in stands in lists that writer and reader walk alike: SNAPSHOT_WALKS for the
  * handful of single values, groom_spans and forest_spans for the arrays. What follows from them is not stored: the
- * numbering of the wisps (groom_number), the slots of active nodes (tree_rebuild), the head's matrix (step_orient),
- * working memory. Per-node arrays are stored whole, inactive nodes included: parent_node and link_length of a node
- * that merged are looked at again when it becomes active anew.
+ * numbering of the wisps (groom_number), their room (pack_wisps), the slots of active nodes (tree_rebuild), the head's
+ * matrix (step_orient), working memory. Per-node arrays are stored whole, inactive nodes included: parent_node and
+ * link_length of a node that merged are looked at again when it becomes active anew.
  *
  * The reader believes nothing. Sizes are checked against the limits and against the bytes that are there before any
  * memory is taken; then every number against its range, then what must hold between them. */
 #include "sim/snapshot.h"
 
 #include "base/error.h"
+#include "groom/pack.h"
 #include "sim/sections.h"
 #include "sim/span.h"
 #include "sim/state.h"
@@ -207,7 +208,9 @@ static awt_status walk_trees(codec *c, snapshot *s)
 {
     for (uint32_t t = 0; t < s->groom->info.wisp_count[0]; t++) {
         codec_bool(c, &s->forest->trees[t].asleep);
+        codec_bool(c, &s->forest->trees[t].loose);
         codec_f32(c, &s->forest->trees[t].quiet_s);
+        codec_f32(c, &s->forest->trees[t].doze_s);
     }
     return AWT_OK;
 }
@@ -342,7 +345,10 @@ static awt_status read_groom(const sections_reader *r, snapshot *s)
     if (status == AWT_OK) {
         status = read_walk(r, "MEAS", walk_measures, s);
     }
-    return status == AWT_OK ? snapshot_check_measures(s->groom, s->error) : status;
+    if (status == AWT_OK) {
+        status = snapshot_check_measures(s->groom, s->error);
+    }
+    return status == AWT_OK && !pack_wisps(s->groom) ? error_set(s->error, AWT_NO_MEMORY, NULL) : status;
 }
 
 /* ---- reading: the forest -------------------------------------------------------------------------------------------

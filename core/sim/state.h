@@ -23,7 +23,9 @@
 typedef struct tree {
     uint32_t first, count;
     bool asleep;   /* nothing of it moves relative to the head (rest.c) */
+    bool loose;    /* offsets, frames or radii are not what the groom's rest shape makes them (embed.c) */
     float quiet_s; /* for so long it has hardly moved */
+    float doze_s;  /* asleep: for so long its offsets have not relaxed */
 } tree;
 
 /* parent_node of a node that is not active: whatever parent it gets is a new one. */
@@ -40,6 +42,10 @@ typedef struct obstacle {
     vec3 rest_a, rest_b; /* at rest, head frame: no node is held farther out than it rests (obstacle.c) */
     bool rests;          /* false: a frame of its own, which has no rest place */
 } obstacle;
+
+typedef struct segment segment; /* touch.h */
+typedef struct segment_ends segment_ends;
+typedef struct contact contact;
 
 struct awt_forest {
     const awt_groom *groom;
@@ -103,12 +109,13 @@ struct awt_forest {
     vec3 *joint_push;
 
     /* contact.c */
-    vec3 *active_push;        /* by slot: change of velocity by contacts in this sub-step */
-    vec3 *contact_velocity;   /* by slot: relative to the turning head */
-    float *contact_load;      /* by slot */
-    struct segment *segments; /* [slots]; of this sub-step, the moving ones first */
-    grid_box *segment_box;    /* [slots] */
-    struct contact *contacts; /* [contact_capacity]; pairs in contact in this sub-step */
+    vec3 *active_push;                  /* by slot: change of velocity by contacts in this sub-step */
+    struct contact_node *contact_nodes; /* by slot (touch.h) */
+    float *contact_load;                /* by slot */
+    segment *segments;                  /* [slots]; of this sub-step, the moving ones first (touch.h) */
+    segment_ends *ends;                 /* [slots]; of the same segments */
+    grid_box *segment_box;              /* [slots] */
+    contact *contacts;                  /* pairs in contact in this sub-step (touch.h) */
     uint32_t contact_capacity;
     uint32_t contacts_left_out; /* in this sub-step: those beyond contact_capacity, which had no effect */
     grid grid;

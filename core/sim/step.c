@@ -57,7 +57,7 @@ static float step_link_error(const awt_forest *f, const tree *t)
 
 static void step_tree(awt_forest *f, uint32_t index, float dt_s, awt_step_stats *stats)
 {
-    const tree *t = &f->trees[index];
+    tree *t = &f->trees[index];
     dynamics_predict(f, t, dt_s);
     if (!joint_links_are_springs(f)) {
         links_project(f, t);

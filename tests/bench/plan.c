@@ -191,8 +191,8 @@ bool paper_plan_read(int argc, char *const *argv, paper_plan *plan, int *code)
     plan->strands = (uint32_t)words.strands;
     plan->points = (uint32_t)words.points;
     plan->workers = (uint32_t)words.workers;
-    if (plan_styles(words.styles, plan) && plan_links(words.links, plan) && plan_params(&words.params, plan) && plan_motion_words(&words) &&
-        plan_motion(&words.motion, plan) && plan_length(words.seconds, plan)) {
+    if (plan_styles(words.styles, plan) && plan_links(words.links, plan) && plan_params(&words.params, plan) &&
+        plan_motion_words(&words) && plan_motion(&words.motion, plan) && plan_length(words.seconds, plan)) {
         return true;
     }
     paper_plan_fini(plan);

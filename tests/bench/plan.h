@@ -19,8 +19,8 @@ typedef struct paper_plan {
     motion clip; /* heap */
     int64_t length_us;
     uint32_t strands, points, workers;
-    double theta;     /* split threshold of all styles; < 0: each style's own */
-    int links;        /* 0 rigid, 1 springs; < 0: each style's own */
+    double theta; /* split threshold of all styles; < 0: each style's own */
+    int links;    /* 0 rigid, 1 springs; < 0: each style's own */
     size_t param_count;
     paper_param params[PAPER_MAX_PARAMS]; /* over the styles' own, the last word theirs */
     const char *json;                     /* file, "-" or NULL */

@@ -2,7 +2,8 @@
  *
  * Half a second of holding still goes before the clip, unmeasured: caches and branch predictors warm up, and the
  * single-level method splits all that it will ever split. Strands are evaluated after the clip, so that they take no
- * cache from the steps. Every worker measures into arrays of its own; the first one is the caller's thread. */
+ * cache from the steps. Times are processor time of the thread that steps. Every worker measures into arrays of its
+ * own; the first one is the caller's thread. */
 #include "bench/bench.h"
 
 #include "base/error.h"
@@ -30,10 +31,11 @@ typedef struct worker {
     awt_error error;
 } worker;
 
+/* Processor time of this thread: what a step costs, whatever else the machine does meanwhile. */
 static double now_ms(void)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 

@@ -31,7 +31,7 @@ static proto_pose wire_pose(const awt_pose *pose)
 /* CREATE of a style with seed 1 at the clip's start. 0 after a failed check. */
 static uint64_t create_style(awtclient *client, const char *style, proto_message *answer)
 {
-    awt_motion start = fixture_motion(fixture_clip("lean"), frame_time(0), zero, zero);
+    awt_motion start = fixture_motion(fixture_clip("jump"), frame_time(0), zero, zero);
     proto_message request = {.type = PROTO_CREATE};
     request.as.create.style = request.as.create.name = proto_str_of(style);
     request.as.create.seed = 1;
@@ -48,7 +48,7 @@ static uint64_t create_style(awtclient *client, const char *style, proto_message
 /* MOTION and QUERY of frame n. */
 static bool play_frame(awtclient *client, uint64_t forest, int n, proto_message *frame)
 {
-    awt_motion m = fixture_motion(fixture_clip("lean"), frame_time(n), zero, zero);
+    awt_motion m = fixture_motion(fixture_clip("jump"), frame_time(n), zero, zero);
     proto_message pose = {.type = PROTO_MOTION}, query = {.type = PROTO_QUERY};
     pose.as.motion.forest = query.as.query.forest = forest;
     pose.as.motion.sequence = (uint32_t)n;
@@ -67,7 +67,7 @@ static awt_forest *local_forest(const char *style)
     const awt_groom *groom = fixture_groom(style, STRANDS);
     awt_forest_def def = awt_forest_def_default(groom);
     def.params = awt_style_find(style)->params;
-    def.start = fixture_motion(fixture_clip("lean"), frame_time(0), zero, zero);
+    def.start = fixture_motion(fixture_clip("jump"), frame_time(0), zero, zero);
     awt_forest *forest = NULL;
     CHECK_INT(awt_forest_create(groom, &def, &forest, NULL), AWT_OK);
     return forest;
@@ -132,7 +132,7 @@ TEST(e2e_decoded_frames_are_what_core_computes_for_the_same_inputs)
             uint32_t splits = 0;
             for (int n = 1; n <= FRAMES; n++) {
                 awt_step_stats stats;
-                fixture_advance(forest, fixture_clip("lean"), frame_time(n), zero, zero, &stats);
+                fixture_advance(forest, fixture_clip("jump"), frame_time(n), zero, zero, &stats);
                 proto_message frame;
                 if (!play_frame(client, handle, n, &frame)) {
                     break;
@@ -195,7 +195,7 @@ static void play_both(int workers, uint64_t hashes[2])
 TEST(e2e_two_clients_at_once_get_the_same_bytes_from_one_worker_and_from_two)
 {
     uint64_t one[2], two[2];
-    fixture_clip("lean"); /* made before the threads share it */
+    fixture_clip("jump"); /* made before the threads share it */
     play_both(1, one);
     play_both(2, two);
     CHECK_U64(two[0], one[0]);

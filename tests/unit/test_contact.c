@@ -2,6 +2,7 @@
 #include "check.h"
 #include "fixture.h"
 
+#include "base/nearest.h"
 #include "base/rng.h"
 #include "base/trig.h"
 #include "sim/contact.h"
@@ -22,6 +23,7 @@ static void soup_lay_out(soup *s, arena *a)
 {
     size_t slots = 3 * (size_t)s->count;
     s->groom.rest_position = ARENA_PUSH(a, vec3, slots);
+    s->groom.rest_room = ARENA_PUSH(a, float, slots);
     s->forest.position = ARENA_PUSH(a, vec3, slots);
     s->forest.velocity = ARENA_PUSH(a, vec3, slots);
     s->forest.radius = ARENA_PUSH(a, float, slots);
@@ -40,6 +42,7 @@ static soup *soup_make(uint32_t count)
     s->forest.groom = &s->groom;
     s->forest.params = awt_params_default();
     s->forest.params.contact = 1;
+    s->forest.params.contact_packing = 0;
     arena counting = arena_counting();
     soup_lay_out(s, &counting);
     CHECK(arena_init(&s->forest.memory, counting.used));
@@ -293,9 +296,20 @@ TEST(wisps_without_relative_motion_do_not_touch)
     soup_free(s);
 }
 
-TEST(the_grid_meets_every_pair_of_boxes_once)
+enum { BOXES = 1100 };
+
+static void count_pairs(void *context, const grid_pair *pairs, uint32_t count)
 {
-    enum { BOXES = 400 };
+    unsigned char(*met)[BOXES] = context;
+    CHECK(count <= GRID_PAIRS);
+    for (uint32_t n = 0; n < count; n++) {
+        CHECK(pairs[n].a < pairs[n].b && pairs[n].b < BOXES);
+        met[pairs[n].a][pairs[n].b]++;
+    }
+}
+
+TEST(the_grid_visits_every_pair_of_overlapping_boxes_once)
+{
     static const double reaches[] = {0.05, 0.3, 1.0};
     for (size_t n = 0; n < sizeof reaches / sizeof reaches[0]; n++) {
         rng r = rng_seed(11 + n);
@@ -314,30 +328,20 @@ TEST(the_grid_meets_every_pair_of_boxes_once)
         CHECK(arena_init(&memory, counting.used));
         grid_lay_out(&g, &memory, BOXES);
         grid_build(&g, boxes, moving, BOXES);
-        for (uint32_t cell = 0; cell < grid_cell_count(&g); cell++) {
-            for (uint32_t i = g.cell_first[cell]; i < g.cell_first[cell + 1]; i++) {
-                for (uint32_t j = i + 1; j < g.cell_first[cell + 1]; j++) {
-                    CHECK(g.entry[i] < g.entry[j]);
-                    if (grid_pair_cell(&g, g.entry[i], g.entry[j]) == cell) {
-                        met[g.entry[i]][g.entry[j]]++;
-                    }
-                }
-            }
-        }
-        uint32_t overlapping = 0, missed = 0, twice = 0;
+        grid_visit_pairs(&g, boxes, moving, count_pairs, met);
+        uint32_t overlapping = 0, missed = 0, wrong = 0;
         for (uint32_t i = 0; i < moving; i++) {
             for (uint32_t j = i + 1; j < BOXES; j++) {
                 const grid_box *a = &boxes[i], *b = &boxes[j];
-                bool overlap = a->least.x <= b->most.x && b->least.x <= a->most.x && a->least.y <= b->most.y &&
-                               b->least.y <= a->most.y && a->least.z <= b->most.z && b->least.z <= a->most.z;
+                bool overlap = grid_overlap(a, b);
                 overlapping += overlap;
                 missed += overlap && met[i][j] == 0;
-                twice += met[i][j] > 1;
+                wrong += met[i][j] > 1 || (met[i][j] == 1 && !overlap);
             }
         }
         CHECK(overlapping > 0);
         CHECK_INT(missed, 0);
-        CHECK_INT(twice, 0);
+        CHECK_INT(wrong, 0);
         arena_fini(&memory);
     }
 }
@@ -380,4 +384,51 @@ TEST(coincident_and_pointlike_segments_give_finite_pushes)
     }
     CHECK_NEAR(vec3_length(soup_momentum(s)), 0, 1e-6);
     soup_free(s);
+}
+
+TEST(a_segment_touches_with_what_its_neighbours_leave_room_for)
+{
+    soup *s = soup_crossing(0, 0.1f); /* 2 mm apart */
+    for (uint32_t k = 0; k < 6; k++) {
+        s->groom.rest_room[k] = 0.0009f;
+    }
+    CHECK_INT(contact_resolve(&s->forest, 0.01f), 1); /* all of the radius, as in the paper */
+    s->forest.params.contact_packing = 1;
+    CHECK_INT(contact_resolve(&s->forest, 0.01f), 0);
+    s->groom.rest_room[2] = s->groom.rest_room[5] = 0.0011f;
+    CHECK_INT(contact_resolve(&s->forest, 0.01f), 1);
+    soup_free(s);
+}
+
+/* Every finest segment against all others, one by one. */
+TEST(room_is_half_the_way_to_the_sixth_nearest_wisp)
+{
+    const awt_groom *groom = fixture_groom("long", 1000);
+    const uint32_t sections = groom->info.sections, first = groom_finest_first(groom);
+    uint32_t less = 0, wrong = 0;
+    for (uint32_t g = first; g < groom->gc_count; g += 5) {
+        for (uint32_t i = 1; i < sections; i++) {
+            const vec3 *a = groom->rest_position + g * sections + i - 1;
+            float nearest[6] = {1e9f, 1e9f, 1e9f, 1e9f, 1e9f, 1e9f};
+            for (uint32_t other = first; other < groom->gc_count; other++) {
+                float least = other == g ? 1e9f : 1e8f;
+                for (uint32_t j = 1; other != g && j < sections; j++) {
+                    const vec3 *b = groom->rest_position + other * sections + j - 1;
+                    float d = nearest_distance(a[0], vec3_sub(a[1], a[0]), b[0], vec3_sub(b[1], b[0]));
+                    least = d < least ? d : least;
+                }
+                for (int k = 0; k < 6; k++) {
+                    float swap = nearest[k];
+                    nearest[k] = least < swap ? least : swap;
+                    least = least < swap ? swap : least;
+                }
+            }
+            float radius = groom->rest_radius[g * sections + i], room = groom->rest_room[g * sections + i];
+            float expected = 0.5f * nearest[5] < radius ? 0.5f * nearest[5] : radius;
+            less += expected < radius;
+            wrong += fabsf(room - expected) > 1e-6f;
+        }
+    }
+    CHECK(less > 100);
+    CHECK_INT(wrong, 0);
 }

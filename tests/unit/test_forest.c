@@ -116,6 +116,9 @@ TEST(a_lean_splits_wisps_and_rest_merges_them_again)
         const char *style = awt_style_at(s)->name;
         const awt_groom *groom = fixture_groom(style, STRANDS);
         awt_forest *f = fixture_forest(groom, style, zero, zero);
+        awt_params params = awt_forest_params(f);
+        params.split_threshold = 0.2f; /* the styles' own leave short hair shut in a lean */
+        awt_forest_set_params(f, &params, NULL);
         uint32_t most = 0;
         awt_step_stats stats;
         for (int n = 1; n <= 1000; n++) {
