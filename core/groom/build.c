@@ -115,6 +115,24 @@ static void describe_box(groom_draft *build)
     }
 }
 
+/* The sizes; and, for a hierarchy that came with the strands, their order. */
+static awt_status plan_sizes(groom_draft *build, const awt_groom_def *def, groom_plan *plan, awt_error *error)
+{
+    awt_status status = plan_make(build->strands, def, plan, error);
+    if (status == AWT_OK && def->hierarchy) {
+        status = modelled_sort(build->strands, def->hierarchy, plan, &build->modelled, error);
+    } else if (status == AWT_OK) {
+        plan_choose_wisps(def, plan);
+    }
+    return status == AWT_OK ? plan_check_sizes(plan, error) : status;
+}
+
+static void draft_fini(groom_draft *build)
+{
+    arena_fini(&build->memory);
+    free(build->modelled);
+}
+
 awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
                            void (*progress)(void *context, double share), void *context, awt_groom **out,
                            awt_error *error)
@@ -122,8 +140,9 @@ awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
     groom_draft build = {.strands = strands, .progress = progress, .context = context};
     groom_plan plan;
     *out = NULL;
-    awt_status status = plan_make(strands, def, &plan, error);
+    awt_status status = plan_sizes(&build, def, &plan, error);
     if (status != AWT_OK) {
+        draft_fini(&build);
         return status;
     }
     build.groom = calloc(1, sizeof *build.groom);
@@ -141,13 +160,13 @@ awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
     describe_lengths(&build);
     describe_radii(build.groom);
     describe_box(&build);
-    arena_fini(&build.memory);
+    draft_fini(&build);
     draft_report(&build, 1.0);
     *out = build.groom;
     return AWT_OK;
 
 fail:
-    arena_fini(&build.memory);
+    draft_fini(&build);
     awt_groom_destroy(build.groom);
     return error_set(error, AWT_NO_MEMORY, NULL);
 }

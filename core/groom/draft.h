@@ -5,11 +5,13 @@
 
 #include "groom/cluster.h"
 #include "groom/groom.h"
+#include "groom/modelled.h"
 #include "groom/polyline.h"
 
 typedef struct groom_draft {
     awt_groom *groom; /* sizes stand in its info */
     const awt_strands *strands;
+    modelled_strand *modelled; /* [strands], from the heap; NULL: the hierarchy is built from the strands */
 
     /* scratch of the build */
     arena memory;
