@@ -244,10 +244,6 @@ typedef struct awt_groom_info {
     double head_radius_m;
     double longest_strand_m, median_strand_m;
     double mean_radius_m[AWT_MAX_LEVELS];
-    /* How far the strands at rest, as awt_groom_strands gives them, are from those that awt_groom_build was given: the
-     * greatest distance and the mean over all points. A strand of points_per_strand points is compared point for point;
-     * of another, each point with the way of the strand that came of it. */
-    double rebuilt_max_m, rebuilt_mean_m;
     float box_min[3], box_max[3]; /* head frame: no point of a strand ever leaves it (CONTRACT.md, Geometry) */
     size_t bytes;                 /* memory held */
 } awt_groom_info;
@@ -264,6 +260,17 @@ awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
                            awt_error *error);
 void awt_groom_destroy(awt_groom *groom);
 void awt_groom_get_info(const awt_groom *groom, awt_groom_info *info);
+
+/* How far the strands at rest, as awt_groom_strands gives them, are from those that awt_groom_build was given. A strand
+ * of points_per_strand points is compared point for point; of another, each of its points with the nearest place on the
+ * way that came of it. */
+typedef struct awt_rebuilt {
+    bool known;           /* false of a groom from a snapshot: what it was built from is not there */
+    double max_m, mean_m; /* over all points of the strands given */
+} awt_rebuilt;
+
+/* Measured by awt_groom_build. */
+awt_rebuilt awt_groom_rebuilt(const awt_groom *groom);
 
 /* ---- motion
  * ---------------------------------------------------------------------------------------------------------- */

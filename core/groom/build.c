@@ -25,6 +25,27 @@ awt_groom_def awt_groom_def_of_style(const awt_style *style)
                            .head_radius_m = AWT_HEAD_RADIUS_M};
 }
 
+/* What the stages report and the share of the time that has passed then: on 50,000 strands of the built-in styles and
+ * on the film head of the real data, about. DRAFT_DONE ends the last stage. */
+#define DRAFT_DONE 1.1
+static const struct {
+    double stage, share;
+} report_times[] = {{0.0, 0.0}, {0.1, 0.05}, {0.2, 0.40}, {0.4, 0.50}, {0.7, 0.60}, {1.0, 0.90}, {DRAFT_DONE, 1.0}};
+
+void draft_report(const groom_draft *build, double stage)
+{
+    size_t i = 1;
+    if (!build->progress) {
+        return;
+    }
+    while (stage > report_times[i].stage) {
+        i++;
+    }
+    const double from = report_times[i - 1].stage, before = report_times[i - 1].share;
+    const double way = (stage - from) / (report_times[i].stage - from);
+    build->progress(build->context, before + way * (report_times[i].share - before));
+}
+
 static void lay_out_scratch(groom_draft *build, arena *memory)
 {
     const size_t strands = build->groom->info.strand_count;
@@ -36,6 +57,8 @@ static void lay_out_scratch(groom_draft *build, arena *memory)
     build->clusters.nearest = ARENA_PUSH(memory, double, strands);
     build->gc_first = ARENA_PUSH(memory, uint32_t, build->groom->gc_count);
     build->length_m = ARENA_PUSH(memory, double, strands);
+    build->strand_scratch = ARENA_PUSH(memory, float, awt_groom_strand_scratch(build->groom));
+    build->rebuilt = ARENA_PUSH(memory, float, 3 * strands * build->groom->info.points_per_strand);
 }
 
 static bool take_memory(groom_draft *build)
@@ -156,12 +179,13 @@ awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
     hierarchy_build(&build);
     fit_wisps(&build);
     bind_strands(&build);
+    measure_rebuilt(&build);
     choose_mass_unit(build.groom);
     describe_lengths(&build);
     describe_radii(build.groom);
     describe_box(&build);
     draft_fini(&build);
-    draft_report(&build, 1.0);
+    draft_report(&build, DRAFT_DONE);
     *out = build.groom;
     return AWT_OK;
 
