@@ -24,7 +24,9 @@ enum {
     PLAY_FILES = 20,
     PLAY_BUSY_TRIES = 100,
     PLAY_BUSY_LEAST_MS = 20,
-    PLAY_BUSY_MOST_MS = 2000
+    PLAY_BUSY_MOST_MS = 2000,
+    PLAY_UPLOAD_STRANDS = 1, /* our numbers of the uploads */
+    PLAY_UPLOAD_HIERARCHY = 2
 };
 
 typedef struct play {
@@ -97,24 +99,31 @@ static void play_upload_progress(void *context, double share)
     progress_show(context, share, "uploading");
 }
 
-static bool play_upload(play *p)
+static bool play_upload(play *p, const char *path, uint32_t number)
 {
     char text[512];
     size_t size;
     awtclient_error error;
-    unsigned char *bytes = files_read(p->plan.groom, PLAY_MAX_FILE, &size, text, sizeof text);
+    unsigned char *bytes = files_read(path, PLAY_MAX_FILE, &size, text, sizeof text);
     if (!bytes) {
         awtctl_failed("%s", text);
         return false;
     }
-    p->progress = progress_begin(stderr, p->plan.groom, p->plan.quiet);
-    bool sent = awtclient_upload(p->client, 1, bytes, size, play_upload_progress, &p->progress, &error);
+    p->progress = progress_begin(stderr, path, p->plan.quiet);
+    bool sent = awtclient_upload(p->client, number, bytes, size, play_upload_progress, &p->progress, &error);
     progress_hide(&p->progress);
     free(bytes);
     if (!sent) {
-        awtctl_failed("%s: %s", p->plan.groom, error.text);
+        awtctl_failed("%s: %s", path, error.text);
     }
     return sent;
+}
+
+static bool play_upload_files(play *p)
+{
+    const play_plan *plan = &p->plan;
+    return (!plan->groom || play_upload(p, plan->groom, PLAY_UPLOAD_STRANDS)) &&
+           (!plan->hierarchy || play_upload(p, plan->hierarchy, PLAY_UPLOAD_HIERARCHY));
 }
 
 static proto_pose pose_to_wire(const awt_pose *pose)
@@ -131,7 +140,9 @@ static void play_fill_create(const play *p, struct proto_create *create)
     const char *slash = strrchr(p->record.source, '/'), *name = slash ? slash + 1 : p->record.source;
     create->source = plan->groom ? 1 : 0;
     create->style = proto_str_of(plan->style ? plan->style : "");
-    create->upload = 1;
+    create->upload = PLAY_UPLOAD_STRANDS;
+    create->own_hierarchy = plan->hierarchy ? 1 : 0;
+    create->hierarchy = PLAY_UPLOAD_HIERARCHY;
     create->name = strlen(name) <= 64 ? proto_str_of(name) : proto_str_of("a strand file");
     create->seed = (uint64_t)plan->seed;
     create->strands = (uint32_t)plan->strands;
@@ -184,7 +195,7 @@ static bool play_prepare(play *p)
         return false;
     }
     p->client = awtctl_connect(&p->plan.connection, PLAY_TIMEOUT_MS);
-    return p->client && (!p->plan.groom || play_upload(p)) && play_create(p);
+    return p->client && play_upload_files(p) && play_create(p);
 }
 
 /* ---- frames

@@ -13,6 +13,7 @@ enum { PLAY_MAX_PARAMS = 64 };
 typedef struct play_plan {
     awtctl_connection connection;
     const char *style, *groom; /* one of them is NULL */
+    const char *hierarchy;     /* of the groom; NULL: made of its strands */
     double scale;              /* of the groom; 0: guess */
     awt_up_axis up;
     double head[4]; /* centre and radius, file units; radius 0: guess */

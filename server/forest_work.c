@@ -26,9 +26,21 @@ static awt_status make_strands(recipe *r, awt_strands *strands, awt_error *error
 static awt_status make_groom(forest_work *w, const awt_strands *strands, awt_error *error)
 {
     int64_t begun_us = clock_monotonic_us();
-    awt_status status = awt_groom_build(strands, &w->making->groom, NULL, NULL, &w->groom, error);
+    const upload *file = w->making->hierarchy;
+    awt_groom_def def = w->making->groom;
+    awt_hierarchy hierarchy = {0};
+    awt_status status = AWT_OK;
+    if (file) {
+        status = awt_hierarchy_read(file->bytes, (size_t)file->total, &hierarchy, error);
+        def.hierarchy = &hierarchy;
+    }
+    if (status == AWT_OK) {
+        status = awt_groom_build(strands, &def, NULL, NULL, &w->groom, error);
+    }
+    awt_hierarchy_fini(&hierarchy);
     w->build_us = clock_between_us(begun_us, clock_monotonic_us());
     w->skipped_strands = strands->skipped_count;
+    w->rebuilt = status == AWT_OK ? awt_groom_rebuilt(w->groom) : (awt_rebuilt){0};
     return status;
 }
 

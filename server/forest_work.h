@@ -51,6 +51,7 @@ typedef struct forest_work {
     published *frame; /* a reference; NULL: failed */
     awt_error error;  /* why, where `frame` is NULL */
     uint32_t build_us, skipped_strands;
+    awt_rebuilt rebuilt;
     uint64_t steps, step_us, encode_us;
 
     /* the hair, NULL until made */

@@ -42,7 +42,7 @@ enum {
 };
 
 /* Bytes. */
-#define LIMIT_UPLOAD_BYTES (UINT64_C(256) << 20)  /* one strand file */
+#define LIMIT_UPLOAD_BYTES (UINT64_C(256) << 20)  /* one file */
 #define LIMIT_UPLOADS_BYTES (UINT64_C(512) << 20) /* all uploads of all connections */
 #define LIMIT_HAIR_BYTES (UINT64_C(4) << 30)      /* forests and grooms; beyond, CREATE is refused */
 
