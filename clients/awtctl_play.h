@@ -36,6 +36,14 @@ typedef struct play_plan {
 /* Fills `plan`, whose texts point into argv. False: the program ends here with *code. */
 bool play_plan_read(int argc, char *const *argv, play_plan *plan, awtctl_exit *code);
 
+/* ---- the hair: strand file and hierarchy to the daemon, which makes a forest of them or of the style ------------ */
+
+/* Shows how far it has come. False: why has been said. */
+bool play_make_hair(awtclient *client, const play_plan *plan, const motion_sample *start,
+                    struct proto_create_reply *forest);
+
+proto_pose play_wire_pose(const awt_pose *pose);
+
 /* ---- the record: every frame's figures -------------------------------------------------------------------------- */
 
 typedef struct play_frame {

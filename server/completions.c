@@ -114,6 +114,8 @@ static void take_created(service *shared, resident *r)
     if (asker) {
         asker->pending--;
     }
+    shared->forests.telling -= r->tells;
+    r->tells = false;
     r->info = r->work.info;
     r->params = r->work.making->params;
     if (accept_created(shared, r, asker)) {

@@ -100,6 +100,7 @@ awt_status recipe_create(const struct proto_create *message, upload *file, uploa
     }
     proto_str_copy(message->name.length || !r->style ? message->name : proto_str_of(r->style->name), r->name,
                    sizeof r->name);
+    r->tells = message->progress != 0;
     r->start = (awt_motion){
         .time_us = message->time_us, .head = convert_pose(&message->head), .body = convert_pose(&message->body)};
     *out = r;

@@ -19,6 +19,7 @@ typedef struct recipe {
     awt_groom_def groom;
     awt_params params;  /* after making: those in force */
     bool own_stiffness; /* style_omega was named; an upload's is else chosen by its groom */
+    bool tells;         /* PROGRESS is wanted */
     bool own_colliders;
     uint32_t collider_count; /* after making: those in force */
     awt_collider colliders[AWT_MAX_COLLIDERS];
