@@ -180,7 +180,14 @@ bool awtclient_receive(awtclient *client, proto_message *message, awtclient_erro
     return receive_message(client, message, deadline_of(client), error);
 }
 
-bool awtclient_call(awtclient *client, proto_message *request, proto_message *answer, awtclient_error *error)
+/* Whoever hears of each PROGRESS; NULL: nobody. */
+typedef struct client_listener {
+    void (*heard)(void *context, const struct proto_progress *progress);
+    void *context;
+} client_listener;
+
+static bool call(awtclient *client, proto_message *request, proto_message *answer, const client_listener *listener,
+                 awtclient_error *error)
 {
     int64_t deadline_us = deadline_of(client);
     awtcodec_number(&client->codec, request);
@@ -195,7 +202,25 @@ bool awtclient_call(awtclient *client, proto_message *request, proto_message *an
         if (match != AWTCODEC_OTHER) {
             return match == AWTCODEC_ANSWER;
         }
+        if (listener && answer->type == PROTO_PROGRESS && answer->request == request->request) {
+            deadline_us = deadline_of(client);
+            listener->heard(listener->context, &answer->as.progress);
+        }
     }
+}
+
+bool awtclient_call(awtclient *client, proto_message *request, proto_message *answer, awtclient_error *error)
+{
+    return call(client, request, answer, NULL, error);
+}
+
+bool awtclient_create(awtclient *client, proto_message *request, proto_message *answer,
+                      void (*heard)(void *context, const struct proto_progress *progress), void *context,
+                      awtclient_error *error)
+{
+    const client_listener listener = {heard, context};
+    request->as.create.progress = 1;
+    return call(client, request, answer, &listener, error);
 }
 
 /* ---- the handshake ----------------------------------------------------------------------------------- */

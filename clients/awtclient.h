@@ -47,6 +47,12 @@ bool awtclient_receive(awtclient *client, proto_message *message, awtclient_erro
  * An ERROR from the daemon becomes false with its code and text. */
 bool awtclient_call(awtclient *client, proto_message *request, proto_message *answer, awtclient_error *error);
 
+/* awtclient_call of a CREATE, whose `progress` it sets: `heard` is told each PROGRESS, and with each the time for the
+ * answer begins anew. */
+bool awtclient_create(awtclient *client, proto_message *request, proto_message *answer,
+                      void (*heard)(void *context, const struct proto_progress *progress), void *context,
+                      awtclient_error *error);
+
 /* Sends a whole file in pieces as upload number `upload`; `progress` (may be NULL) hears shares from 0 to 1. */
 bool awtclient_upload(awtclient *client, uint32_t upload, const void *bytes, size_t size,
                       void (*progress)(void *context, double share), void *context, awtclient_error *error);

@@ -113,8 +113,8 @@ static const char *plan_whole(const play_words *words, play_plan *plan)
     if (plan->groom && (plan->strands > 0 || plan->seed > 0)) {
         return "--strands and --seed are for --style; a file has the strands that it has";
     }
-    if (!plan->groom && (plan->scale > 0 || words->up || words->head)) {
-        return "--scale, --up and --head say how a strand file is to be read: they go with --groom";
+    if (!plan->groom && (plan->scale > 0 || words->up || words->head || plan->hierarchy)) {
+        return "--scale, --up, --head and --hierarchy are about a strand file: they go with --groom";
     }
     if (!plan->style && !plan->groom) {
         plan->style = "long";
@@ -137,6 +137,7 @@ bool play_plan_read(int argc, char *const *argv, play_plan *plan, awtctl_exit *c
         {"scale", OPTION_REAL, "S", &plan->scale, 0, 1e9, "metres per unit of the strand file; 0: guess"},
         {"up", OPTION_TEXT, "y|z", &words.up, 0, 0, "the strand file's up axis; else guessed"},
         {"head", OPTION_TEXT, "X,Y,Z,R", &words.head, 0, 0, "head's centre and radius, file units; else guessed"},
+        {"hierarchy", OPTION_TEXT, "FILE", &plan->hierarchy, 0, 0, "its wisps: a line a strand, a number a level"},
         {"strands", OPTION_INTEGER, "N", &plan->strands, 0, AWT_MAX_STRANDS, "of a style; 0: the daemon's default"},
         {"seed", OPTION_INTEGER, "N", &plan->seed, 0, 9e15, "of a style: other seeds, other hair"},
         {"param", OPTION_LIST, "NAME=VALUE", &words.params, 0, 0, "a simulation parameter; may be given again"},

@@ -19,7 +19,6 @@
 
 enum {
     PLAY_TIMEOUT_MS = 120000, /* building a large groom takes a while */
-    PLAY_MAX_FILE = 512 << 20,
     PLAY_MAX_FRAMES = 1000000,
     PLAY_FILES = 20,
     PLAY_BUSY_TRIES = 100,
@@ -92,83 +91,6 @@ static bool play_count_frames(play *p)
     return p->record.frames != NULL;
 }
 
-static void play_upload_progress(void *context, double share)
-{
-    progress_show(context, share, "uploading");
-}
-
-static bool play_upload(play *p)
-{
-    char text[512];
-    size_t size;
-    awtclient_error error;
-    unsigned char *bytes = files_read(p->plan.groom, PLAY_MAX_FILE, &size, text, sizeof text);
-    if (!bytes) {
-        awtctl_failed("%s", text);
-        return false;
-    }
-    p->progress = progress_begin(stderr, p->plan.groom, p->plan.quiet);
-    bool sent = awtclient_upload(p->client, 1, bytes, size, play_upload_progress, &p->progress, &error);
-    progress_hide(&p->progress);
-    free(bytes);
-    if (!sent) {
-        awtctl_failed("%s: %s", p->plan.groom, error.text);
-    }
-    return sent;
-}
-
-static proto_pose pose_to_wire(const awt_pose *pose)
-{
-    proto_pose wire;
-    memcpy(wire.position, pose->position, sizeof wire.position);
-    memcpy(wire.orientation, pose->orientation, sizeof wire.orientation);
-    return wire;
-}
-
-static void play_fill_create(const play *p, struct proto_create *create)
-{
-    const play_plan *plan = &p->plan;
-    const char *slash = strrchr(p->record.source, '/'), *name = slash ? slash + 1 : p->record.source;
-    create->source = plan->groom ? 1 : 0;
-    create->style = proto_str_of(plan->style ? plan->style : "");
-    create->upload = 1;
-    create->name = strlen(name) <= 64 ? proto_str_of(name) : proto_str_of("a strand file");
-    create->seed = (uint64_t)plan->seed;
-    create->strands = (uint32_t)plan->strands;
-    create->scale = plan->scale;
-    create->up = (uint8_t)plan->up;
-    create->head_x = plan->head[0];
-    create->head_y = plan->head[1];
-    create->head_z = plan->head[2];
-    create->head_radius = plan->head[3];
-    create->params.count = (uint16_t)plan->param_count;
-    for (size_t i = 0; i < plan->param_count; i++) {
-        create->params.items[i].name = proto_str_of(plan->params[i].name);
-        create->params.items[i].value = plan->params[i].value;
-    }
-    motion_sample start = motion_at(&p->motion, 0);
-    create->head = pose_to_wire(&start.head);
-    create->body = pose_to_wire(&start.body);
-}
-
-static bool play_create(play *p)
-{
-    awtclient_error error;
-    proto_message request = {.type = PROTO_CREATE}, answer;
-    if (p->plan.style && strlen(p->plan.style) > 32) {
-        awtctl_failed("no style has so long a name (awtctl styles lists them)");
-        return false;
-    }
-    play_fill_create(p, &request.as.create);
-    if (!awtclient_call(p->client, &request, &answer, &error)) {
-        awtctl_failed("%s: %s", p->record.source, error.text);
-        return false;
-    }
-    p->record.forest = answer.as.create_reply;
-    p->created = true;
-    return true;
-}
-
 static bool play_prepare(play *p)
 {
     char text[512];
@@ -184,7 +106,9 @@ static bool play_prepare(play *p)
         return false;
     }
     p->client = awtctl_connect(&p->plan.connection, PLAY_TIMEOUT_MS);
-    return p->client && (!p->plan.groom || play_upload(p)) && play_create(p);
+    motion_sample start = motion_at(&p->motion, 0);
+    p->created = p->client && play_make_hair(p->client, &p->plan, &start, &p->record.forest);
+    return p->created;
 }
 
 /* ---- frames
@@ -226,8 +150,8 @@ static bool play_ask_frame(play *p, size_t frame, proto_message *answer)
     move.as.motion.epoch = 1;
     move.as.motion.sequence = (uint32_t)frame + 1;
     move.as.motion.time_us = time_us;
-    move.as.motion.head = pose_to_wire(&at.head);
-    move.as.motion.body = pose_to_wire(&at.body);
+    move.as.motion.head = play_wire_pose(&at.head);
+    move.as.motion.body = play_wire_pose(&at.body);
     p->record.frames[frame].head = at.head;
     p->record.frames[frame].body = at.body;
     if (!awtclient_send(p->client, &move, &error) || !play_query(p, time_us, answer, &error)) {

@@ -18,6 +18,7 @@ typedef struct play_param {
 typedef struct play_plan {
     awtctl_connection connection;
     const char *style, *groom; /* one of them is NULL */
+    const char *hierarchy;     /* of the groom; NULL: made of its strands */
     double scale;              /* of the groom; 0: guess */
     awt_up_axis up;
     double head[4]; /* centre and radius, file units; radius 0: guess */
@@ -36,6 +37,14 @@ typedef struct play_plan {
 
 /* Fills `plan`, whose texts point into argv. False: the program ends here with *code. */
 bool play_plan_read(int argc, char *const *argv, play_plan *plan, awtctl_exit *code);
+
+/* ---- the hair: strand file and hierarchy to the daemon, which makes a forest of them or of the style ------------ */
+
+/* Shows how far it has come. False: why has been said. */
+bool play_make_hair(awtclient *client, const play_plan *plan, const motion_sample *start,
+                    struct proto_create_reply *forest);
+
+proto_pose play_wire_pose(const awt_pose *pose);
 
 /* ---- the record: every frame's figures -------------------------------------------------------------------------- */
 

@@ -19,14 +19,26 @@ static const char *guessed(const play_record *record, int bit)
     return record->forest.guessed >> bit & 1 ? " (guessed)" : "";
 }
 
+static void print_wisps(const struct proto_create_reply *f, FILE *file)
+{
+    fprintf(file, "wisps  ");
+    for (uint16_t level = 0; level < f->wisp_levels.count; level++) {
+        const struct proto_wisp_level *l = &f->wisp_levels.items[level];
+        fprintf(file, " %s%u of radius %.2f mm", level > 0 ? "> " : "", l->wisps, (double)l->mean_radius_m * 1000);
+    }
+    fprintf(file, "; %u sections; nodes: %u coarse, %u finest; built in %.2f s\n", f->sections, f->coarse_nodes,
+            f->finest_nodes, (double)f->build_us * 1e-6);
+    fprintf(file, "rebuilt at rest within %.3g mm of the strands given, %.2g mm on average\n",
+            (double)f->rebuilt_max_m * 1000, (double)f->rebuilt_mean_m * 1000);
+}
+
 void play_record_print_forest(const play_record *record, FILE *file)
 {
     const struct proto_create_reply *f = &record->forest;
     fprintf(file, "hair    %s: %u strands of %u points, %" PRIu32 " left out; longest %.3f m, median %.3f m, %.3f kg\n",
             record->source, f->strands, f->points_per_strand, f->skipped_strands, f->longest_strand_m,
             f->median_strand_m, f->mass_kg);
-    fprintf(file, "wisps   %u trees of %u levels, %u sections; nodes: %u coarse, %u finest; built in %.2f s\n",
-            f->top_wisps, f->levels, f->sections, f->coarse_nodes, f->finest_nodes, (double)f->build_us * 1e-6);
+    print_wisps(f, file);
     if (record->plan->groom) {
         fprintf(file,
                 "placed  %g m per unit%s, %s up%s, head at %.4g %.4g %.4g of radius %.4g in the file's units "
@@ -212,6 +224,21 @@ static void json_colliders(jsonout *json, const struct proto_create_reply *fores
     jsonout_close(json);
 }
 
+static void json_levels(jsonout *json, const struct proto_create_reply *forest)
+{
+    jsonout_array(json, "wisp_levels");
+    for (uint16_t level = 0; level < forest->wisp_levels.count; level++) {
+        const struct proto_wisp_level *l = &forest->wisp_levels.items[level];
+        jsonout_object(json, NULL);
+        json->compact = true;
+        jsonout_unsigned(json, "wisps", l->wisps);
+        jsonout_float(json, "mean_radius_m", l->mean_radius_m);
+        jsonout_close(json);
+        json->compact = false;
+    }
+    jsonout_close(json);
+}
+
 static void json_forest(jsonout *json, const play_record *record)
 {
     const struct proto_create_reply *f = &record->forest;
@@ -224,6 +251,10 @@ static void json_forest(jsonout *json, const play_record *record)
     jsonout_unsigned(json, "finest_nodes", f->finest_nodes);
     jsonout_unsigned(json, "coarse_nodes", f->coarse_nodes);
     jsonout_unsigned(json, "levels", f->levels);
+    jsonout_unsigned(json, "sections", f->sections);
+    json_levels(json, f);
+    jsonout_float(json, "rebuilt_max_m", f->rebuilt_max_m);
+    jsonout_float(json, "rebuilt_mean_m", f->rebuilt_mean_m);
     jsonout_real(json, "head_radius_m", f->head_radius_m);
     jsonout_real(json, "turned_degrees", f->turned_degrees);
     jsonout_unsigned(json, "build_us", f->build_us);

@@ -239,6 +239,9 @@ awtcodec_match awtcodec_matches(const proto_message *request, const proto_messag
     if (!ours) {
         return AWTCODEC_OTHER;
     }
+    if (message->type == PROTO_PROGRESS && request->type == PROTO_CREATE) {
+        return AWTCODEC_OTHER;
+    }
     if (message->type != awtcodec_answer_type(request->type)) {
         awtcodec_fail(error, AWTCLIENT_PEER, "the other end answered %s with %s", proto_type_name(request->type),
                       proto_type_name(message->type));

@@ -76,6 +76,7 @@ typedef struct awt_strands {
     uint32_t *first_point;  /* [strand_count + 1], the points of strand s are first_point[s] .. first_point[s+1]-1 */
     float *positions;       /* [point_count][3], root to tip */
     uint32_t skipped_count; /* strands left out: zero length, or fewer than two distinct points */
+    uint32_t *file_strand;  /* [strand_count], rising: which strand of the file each one is; NULL: all are there */
 } awt_strands;
 
 /* Reads a strand file (format recognised by its content, DATA.md). `out` is written on success only and then
@@ -85,6 +86,24 @@ awt_status awt_strands_read(const void *bytes, size_t size, awt_strands *out, aw
 
 /* Frees what a read or a style made; accepts a zeroed object. */
 void awt_strands_fini(awt_strands *strands);
+
+/* A hierarchy that comes with the strands (§2.1: the modeller's): which wisp each strand belongs to, level by level.
+ * The numbers only say which strands belong together; strands that share a wisp share one at every coarser level. */
+typedef struct awt_hierarchy {
+    uint32_t levels; /* 1 .. AWT_MAX_LEVELS */
+    uint32_t
+        strand_count; /* of the file: those that awt_strands_read leaves out count, though their rows say nothing */
+    uint32_t *wisps;  /* [strand_count][levels], coarsest level first, any numbers */
+} awt_hierarchy;
+
+/* Reads a hierarchy file: text with one line a strand, in the strand file's order, of as many whole numbers as there
+ * are levels, with spaces, tabs, commas or semicolons between; empty lines and what follows a # are passed over. `out`
+ * is written on success only and then owns heap memory: awt_hierarchy_fini. Whether it fits the strands shows in
+ * awt_groom_build. AWT_BAD_VALUE (the text names the line), AWT_LIMIT, AWT_NO_MEMORY. */
+awt_status awt_hierarchy_read(const void *bytes, size_t size, awt_hierarchy *out, awt_error *error);
+
+/* Frees what a read made; accepts a zeroed object. */
+void awt_hierarchy_fini(awt_hierarchy *hierarchy);
 
 typedef enum awt_up_axis { AWT_UP_GUESS, AWT_UP_Y, AWT_UP_Z } awt_up_axis;
 
@@ -208,6 +227,9 @@ typedef struct awt_groom_def {
     uint32_t top_wisps;         /* 0: chosen from finest_wisps and levels */
     uint32_t points_per_strand; /* of the strands that come out; 0: as many as the strands have */
     double head_radius_m;       /* collision and quantisation; the head is a sphere about the origin */
+    /* NULL: built from the strands. Else only read while building; it gives levels, finest_wisps and top_wisps, which
+     * are then not looked at. */
+    const awt_hierarchy *hierarchy;
 } awt_groom_def;
 
 /* levels 3, head AWT_HEAD_RADIUS_M, the rest chosen. */
@@ -230,7 +252,9 @@ typedef struct awt_groom_info {
 
 /* Builds the hierarchy: clusters strands by root place and shape into top-level wisps, refines them into
  * `levels` levels, moves every super-GC to the centre-of-mass curve of its sub-GCs and fits its radius.
- * `strands` is in the head frame and is only read. `progress` (may be NULL) hears shares from 0 to 1.
+ * With def->hierarchy the wisps are those of the hierarchy, in the order in which each one's first strand comes, inside
+ * the wisp above; one that is not nested, or not of these strands, is AWT_BAD_VALUE, with strand and level in the text.
+ * `strands` is in the head frame and is only read. `progress` (may be NULL) hears shares from 0 to 1, in even time.
  * The caller owns *out: awt_groom_destroy, after every forest on it.
  * AWT_NO_STRANDS, AWT_BAD_VALUE, AWT_LIMIT, AWT_NO_MEMORY; *out is then NULL. */
 awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
@@ -238,6 +262,17 @@ awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
                            awt_error *error);
 void awt_groom_destroy(awt_groom *groom);
 void awt_groom_get_info(const awt_groom *groom, awt_groom_info *info);
+
+/* How far the strands at rest, as awt_groom_strands gives them, are from those that awt_groom_build was given. A strand
+ * of points_per_strand points is compared point for point; of another, each of its points with the nearest place on the
+ * way that came of it. */
+typedef struct awt_rebuilt {
+    bool known;           /* false of a groom from a snapshot: what it was built from is not there */
+    double max_m, mean_m; /* over all points of the strands given */
+} awt_rebuilt;
+
+/* Measured by awt_groom_build. */
+awt_rebuilt awt_groom_rebuilt(const awt_groom *groom);
 
 /* ---- motion
  * ---------------------------------------------------------------------------------------------------------- */

@@ -18,6 +18,13 @@ static void fill_groom(struct proto_create_reply *c, const awt_groom_info *info)
     c->finest_wisps = info->wisp_count[info->levels - 1];
     c->coarse_nodes = info->coarse_nodes;
     c->finest_nodes = info->finest_nodes;
+    _Static_assert(sizeof c->wisp_levels.items / sizeof c->wisp_levels.items[0] == AWT_MAX_LEVELS,
+                   "every level of the library has its place");
+    c->wisp_levels.count = (uint16_t)info->levels;
+    for (uint32_t level = 0; level < info->levels; level++) {
+        c->wisp_levels.items[level] = (struct proto_wisp_level){.wisps = info->wisp_count[level],
+                                                                .mean_radius_m = (float)info->mean_radius_m[level]};
+    }
     c->mass_kg = info->mass_kg;
     c->longest_strand_m = info->longest_strand_m;
     c->median_strand_m = info->median_strand_m;
@@ -57,6 +64,8 @@ static void reply_created(session *s, const resident *r)
     memcpy(c->view_token, r->view_token, sizeof c->view_token);
     c->skipped_strands = r->work.skipped_strands;
     c->build_us = r->work.build_us;
+    c->rebuilt_max_m = (float)r->work.rebuilt.max_m;
+    c->rebuilt_mean_m = (float)r->work.rebuilt.mean_m;
     fill_groom(c, &r->info);
     fill_taken(c, r->work.making);
     session_send(s, &reply);
@@ -105,6 +114,8 @@ static void take_created(service *shared, resident *r)
     if (asker) {
         asker->pending--;
     }
+    shared->forests.telling -= r->tells;
+    r->tells = false;
     r->info = r->work.info;
     r->params = r->work.making->params;
     if (accept_created(shared, r, asker)) {

@@ -9,6 +9,26 @@
 
 /* ---- making -------------------------------------------------------------------------------------------------- */
 
+enum { NOTE_WHOLE = 65535 }; /* a note is the stage, and its share in 16 bits */
+
+static void note_stage(forest_work *w, forest_stage stage, double share)
+{
+    unsigned part = (unsigned)(share * NOTE_WHOLE);
+    atomic_store_explicit(&w->note, (unsigned)stage << 16 | part, memory_order_relaxed);
+}
+
+static void note_wisps(void *context, double share)
+{
+    note_stage(context, FOREST_WISPS, share);
+}
+
+forest_stage forest_work_stage(forest_work *w, float *share)
+{
+    unsigned note = atomic_load_explicit(&w->note, memory_order_relaxed);
+    *share = (float)(note & NOTE_WHOLE) / (float)NOTE_WHOLE;
+    return (forest_stage)(note >> 16);
+}
+
 /* Strands in the head frame, from the style or the file. */
 static awt_status make_strands(recipe *r, awt_strands *strands, awt_error *error)
 {
@@ -26,9 +46,21 @@ static awt_status make_strands(recipe *r, awt_strands *strands, awt_error *error
 static awt_status make_groom(forest_work *w, const awt_strands *strands, awt_error *error)
 {
     int64_t begun_us = clock_monotonic_us();
-    awt_status status = awt_groom_build(strands, &w->making->groom, NULL, NULL, &w->groom, error);
+    const upload *file = w->making->hierarchy;
+    awt_groom_def def = w->making->groom;
+    awt_hierarchy hierarchy = {0};
+    awt_status status = AWT_OK;
+    if (file) {
+        status = awt_hierarchy_read(file->bytes, (size_t)file->total, &hierarchy, error);
+        def.hierarchy = &hierarchy;
+    }
+    if (status == AWT_OK) {
+        status = awt_groom_build(strands, &def, note_wisps, w, &w->groom, error);
+    }
+    awt_hierarchy_fini(&hierarchy);
     w->build_us = clock_between_us(begun_us, clock_monotonic_us());
     w->skipped_strands = strands->skipped_count;
+    w->rebuilt = status == AWT_OK ? awt_groom_rebuilt(w->groom) : (awt_rebuilt){0};
     return status;
 }
 
@@ -79,11 +111,13 @@ static awt_status make_forest(forest_work *w, awt_error *error)
 static awt_status make_hair(forest_work *w, awt_error *error)
 {
     awt_strands strands = {0};
+    note_stage(w, FOREST_STRANDS, 0);
     awt_status status = make_strands(w->making, &strands, error);
     if (status == AWT_OK) {
         status = make_groom(w, &strands, error);
     }
     awt_strands_fini(&strands);
+    note_stage(w, FOREST_DRAWS, 0);
     if (status == AWT_OK) {
         status = make_buffers(w, error);
     }

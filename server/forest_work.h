@@ -2,8 +2,8 @@
  * frame.
  *
  * A forest_work is wholly the worker's from worker_pool_submit until the I/O thread takes the job back, and wholly the
- * I/O thread's otherwise. What comes out depends only on the recipe and on the inputs in their order, never on which
- * worker runs it or when. */
+ * I/O thread's otherwise; `note` alone is both's. What comes out depends only on the recipe and on the inputs in their
+ * order, never on which worker runs it or when. */
 #ifndef FOREST_WORK_H
 #define FOREST_WORK_H
 
@@ -11,6 +11,8 @@
 #include "published.h"
 #include "recipe.h"
 #include "worker.h"
+
+#include <stdatomic.h>
 
 /* Whom to answer: the session may be gone by then. */
 typedef struct origin {
@@ -37,8 +39,12 @@ typedef struct forest_input {
 /* Frees a whole list. */
 void forest_inputs_free(forest_input *first);
 
+/* What a worker that makes a forest is at: PROGRESS's `stage`. */
+typedef enum forest_stage { FOREST_WAITS, FOREST_STRANDS, FOREST_WISPS, FOREST_DRAWS } forest_stage;
+
 typedef struct forest_work {
     job job;
+    atomic_uint note; /* while it is made: how far it has come, see forest_work_stage; written by the worker */
 
     /* the task; the I/O thread fills it in before submitting */
     recipe *making;       /* CREATE; NULL: QUERY */
@@ -51,6 +57,7 @@ typedef struct forest_work {
     published *frame; /* a reference; NULL: failed */
     awt_error error;  /* why, where `frame` is NULL */
     uint32_t build_us, skipped_strands;
+    awt_rebuilt rebuilt;
     uint64_t steps, step_us, encode_us;
 
     /* the hair, NULL until made */
@@ -66,6 +73,9 @@ typedef struct forest_work {
 
 /* The job's function: what `making` or `inputs` say. */
 void forest_work_run(job *work);
+
+/* What the worker is at, and the share of that which is done. Any thread. */
+forest_stage forest_work_stage(forest_work *work, float *share);
 
 /* Frees task, result and hair; accepts a zeroed one. Not while a worker has it. */
 void forest_work_fini(forest_work *work);

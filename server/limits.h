@@ -42,7 +42,7 @@ enum {
 };
 
 /* Bytes. */
-#define LIMIT_UPLOAD_BYTES (UINT64_C(256) << 20)  /* one strand file */
+#define LIMIT_UPLOAD_BYTES (UINT64_C(256) << 20)  /* one file */
 #define LIMIT_UPLOADS_BYTES (UINT64_C(512) << 20) /* all uploads of all connections */
 #define LIMIT_HAIR_BYTES (UINT64_C(4) << 30)      /* forests and grooms; beyond, CREATE is refused */
 
@@ -50,6 +50,7 @@ enum {
 #define LIMIT_HANDSHAKE_US INT64_C(10000000)   /* from accept until the client is in */
 #define LIMIT_WRITE_STALL_US INT64_C(30000000) /* a peer that takes nothing for so long is let go */
 #define LIMIT_LINGER_US INT64_C(1000000)       /* after the last byte out, for the peer to close first */
+#define LIMIT_PROGRESS_US INT64_C(100000)      /* from one PROGRESS to the next */
 #define LIMIT_ACCEPT_PAUSE_US INT64_C(100000)  /* no accept for so long when descriptors have run out */
 #define LIMIT_STOP_FLUSH_US INT64_C(2000000)   /* after SIGTERM, for what is still unsent */
 

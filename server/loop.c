@@ -2,6 +2,7 @@
 #include "loop.h"
 #include "completions.h"
 #include "log.h"
+#include "making.h"
 #include "net.h"
 
 #include <errno.h>
@@ -139,8 +140,10 @@ static void turn(loop *l, int64_t until_us)
 {
     int64_t before_us = l->shared->options.clock_us();
     uint32_t count = l->count;
+    int64_t due_us = making_due_us(l->shared);
     fill_slots(l, before_us);
-    int ready = poll(l->polled, SLOT_CONNECTIONS + count, sleep_ms(l, before_us, until_us));
+    int ready =
+        poll(l->polled, SLOT_CONNECTIONS + count, sleep_ms(l, before_us, due_us < until_us ? due_us : until_us));
     if (ready < 0) { /* EINTR, or no memory for a moment: nobody has anything to say */
         for (uint32_t i = 0; i < SLOT_CONNECTIONS + count; i++) {
             l->polled[i].revents = 0;
@@ -149,6 +152,7 @@ static void turn(loop *l, int64_t until_us)
     int64_t now_us = l->shared->options.clock_us();
     wake_clear(l->bell);
     bool results = completions_take(l->shared);
+    making_tell(l->shared, now_us);
     give_turns(l, count, results, now_us);
     if (l->polled[SLOT_LISTENER].revents & POLLIN) {
         accept_connections(l, now_us);

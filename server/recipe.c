@@ -39,13 +39,20 @@ static awt_status take_source(const struct proto_create *message, upload *file, 
 }
 
 /* A field that is 0 leaves what the style or the default says. */
-static void take_groom(const struct proto_create *message, awt_groom_def *groom)
+static awt_status take_groom(const struct proto_create *message, upload *hierarchy, recipe *r, awt_error *error)
 {
+    awt_groom_def *groom = &r->groom;
+    if (hierarchy && (message->levels || message->finest_wisps || message->top_wisps)) {
+        return error_set(error, AWT_BAD_VALUE,
+                         "levels, finest_wisps and top_wisps are the hierarchy's: with own_hierarchy they are 0");
+    }
+    r->hierarchy = hierarchy ? upload_hold(hierarchy) : NULL;
     groom->levels = message->levels ? message->levels : groom->levels;
     groom->sections = message->sections ? message->sections : groom->sections;
     groom->finest_wisps = message->finest_wisps ? message->finest_wisps : groom->finest_wisps;
     groom->top_wisps = message->top_wisps ? message->top_wisps : groom->top_wisps;
     groom->points_per_strand = message->points_per_strand ? message->points_per_strand : groom->points_per_strand;
+    return AWT_OK;
 }
 
 static awt_status take_colliders(const struct proto_create *message, recipe *r, awt_error *error)
@@ -64,7 +71,8 @@ static awt_status take_colliders(const struct proto_create *message, recipe *r, 
     return AWT_OK;
 }
 
-awt_status recipe_create(const struct proto_create *message, upload *file, recipe **out, awt_error *error)
+awt_status recipe_create(const struct proto_create *message, upload *file, upload *hierarchy, recipe **out,
+                         awt_error *error)
 {
     *out = NULL;
     recipe *r = calloc(1, sizeof *r);
@@ -72,6 +80,9 @@ awt_status recipe_create(const struct proto_create *message, upload *file, recip
         return error_set(error, AWT_NO_MEMORY, NULL);
     }
     awt_status status = take_source(message, file, r, error);
+    if (status == AWT_OK) {
+        status = take_groom(message, hierarchy, r, error);
+    }
     if (status == AWT_OK) {
         status = convert_params(message->params.items, message->params.count, &r->params, error);
     }
@@ -87,9 +98,9 @@ awt_status recipe_create(const struct proto_create *message, upload *file, recip
         recipe_destroy(r);
         return status;
     }
-    take_groom(message, &r->groom);
     proto_str_copy(message->name.length || !r->style ? message->name : proto_str_of(r->style->name), r->name,
                    sizeof r->name);
+    r->tells = message->progress != 0;
     r->start = (awt_motion){
         .time_us = message->time_us, .head = convert_pose(&message->head), .body = convert_pose(&message->body)};
     *out = r;
@@ -100,6 +111,7 @@ void recipe_destroy(recipe *made)
 {
     if (made) {
         upload_release(made->file);
+        upload_release(made->hierarchy);
         free(made);
     }
 }

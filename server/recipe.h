@@ -12,21 +12,24 @@ typedef struct recipe {
     char name[RECIPE_NAME];
     const awt_style *style; /* NULL: from the upload */
     upload *file;           /* NULL: from the style; a reference */
+    upload *hierarchy;      /* NULL: wisps are made of the strands; a reference */
     uint64_t seed;
     uint32_t strands;
     awt_placement placement; /* of the file; after placing: what was taken */
     awt_groom_def groom;
     awt_params params;  /* after making: those in force */
     bool own_stiffness; /* style_omega was named; an upload's is else chosen by its groom */
+    bool tells;         /* PROGRESS is wanted */
     bool own_colliders;
     uint32_t collider_count; /* after making: those in force */
     awt_collider colliders[AWT_MAX_COLLIDERS];
     awt_motion start;
 } recipe;
 
-/* Makes a recipe of a CREATE; `file` is its complete upload (a reference is taken), NULL where it has none. The caller
- * owns *out: recipe_destroy. AWT_NO_STYLE, AWT_NO_PARAM, AWT_BAD_VALUE, AWT_LIMIT, AWT_NO_MEMORY. */
-awt_status recipe_create(const struct proto_create *message, upload *file, recipe **out, awt_error *error);
+/* Makes a recipe of a CREATE; `file` and `hierarchy` are its complete uploads (references are taken), NULL where it has
+ * none. The caller owns *out: recipe_destroy. AWT_NO_STYLE, AWT_NO_PARAM, AWT_BAD_VALUE, AWT_LIMIT, AWT_NO_MEMORY. */
+awt_status recipe_create(const struct proto_create *message, upload *file, upload *hierarchy, recipe **out,
+                         awt_error *error);
 /* On the I/O thread. Accepts NULL. */
 void recipe_destroy(recipe *made);
 

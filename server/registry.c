@@ -21,6 +21,7 @@ static void resident_free(registry *reg, resident *r)
     *(r->previous ? &r->previous->next : &reg->first) = r->next;
     *(r->next ? &r->next->previous : &reg->last) = r->previous;
     reg->alive--;
+    reg->telling -= r->tells;
     forest_inputs_free(r->waiting);
     published_release(r->latest);
     forest_work_fini(&r->work);
@@ -85,6 +86,9 @@ awt_status registry_create(registry *reg, recipe *making, origin from, int64_t n
     r->creator = from;
     r->params = making->params;
     r->motion_us = making->start.time_us;
+    r->tells = making->tells;
+    reg->telling += r->tells;
+    atomic_init(&r->work.note, 0);
     r->work.making = making;
     r->work.submitted_us = now_us;
     submit(reg, r);

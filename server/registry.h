@@ -24,6 +24,7 @@ typedef struct resident {
     bool ready;     /* made; before, nobody but CREATE's answer may touch it */
     bool busy;      /* a worker has `work` */
     bool doomed;    /* ended; freed when the worker hands `work` back */
+    bool tells;     /* is being made for someone who wants PROGRESS */
 
     forest_input *waiting, **waiting_end;
     uint32_t waiting_inputs, waiting_queries;
@@ -49,6 +50,7 @@ typedef struct registry {
     resident *first, *last; /* in order of creation; doomed ones too, until they are freed */
     uint32_t alive;         /* doomed ones too: they hold memory */
     uint32_t greatest;
+    uint32_t telling; /* residents that tell */
     worker_pool *pool;
 } registry;
 

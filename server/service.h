@@ -32,6 +32,7 @@ typedef struct service {
     upload_budget uploads;
     service_counters counters;
     int64_t started_us;
+    int64_t progress_us; /* when PROGRESS is due next, if anyone wants it */
 } service;
 
 /* Starts the workers. False: no memory or no threads; nothing is left behind then. */

@@ -21,17 +21,20 @@ void session_create(session *s, const proto_message *message)
     const struct proto_create *create = &message->as.create;
     awt_error error = {0};
     recipe *making = NULL;
-    upload *file = create->source == RECIPE_FROM_UPLOAD ? find_upload(s, create->upload) : NULL;
+    const bool from_upload = create->source == RECIPE_FROM_UPLOAD, own_hierarchy = from_upload && create->own_hierarchy;
+    upload *file = from_upload ? find_upload(s, create->upload) : NULL;
+    upload *hierarchy = own_hierarchy ? find_upload(s, create->hierarchy) : NULL;
     if (create->source > RECIPE_FROM_UPLOAD) {
         session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE,
                       "source is %u; 0 is a built-in style, 1 an upload", (unsigned)create->source);
         return;
     }
-    if (create->source == RECIPE_FROM_UPLOAD && !file) {
-        session_error(s, message->type, message->request, PROTO_ERROR_NO_UPLOAD, NULL);
+    if ((from_upload && !file) || (own_hierarchy && !hierarchy)) {
+        session_error(s, message->type, message->request, PROTO_ERROR_NO_UPLOAD, "there is no complete upload %lu",
+                      (unsigned long)(from_upload && !file ? create->upload : create->hierarchy));
         return;
     }
-    awt_status status = recipe_create(create, file, &making, &error);
+    awt_status status = recipe_create(create, file, hierarchy, &making, &error);
     if (status == AWT_OK) {
         origin from = {.session = s->handle, .request = message->request};
         status = registry_create(&s->shared->forests, making, from, s->shared->options.clock_us(), &error);

@@ -1,4 +1,4 @@
-/* session_upload.c: UPLOAD: pieces of strand files. */
+/* session_upload.c: UPLOAD: pieces of files. */
 #include "handlers.h"
 
 static upload **upload_place(session *s, uint32_t number)
@@ -58,7 +58,7 @@ static upload **begin(session *s, const proto_message *message)
 {
     const struct proto_upload *piece = &message->as.upload;
     if (piece->total > LIMIT_UPLOAD_BYTES) {
-        session_error(s, message->type, message->request, PROTO_ERROR_LIMIT, "a strand file has %lu MiB at most",
+        session_error(s, message->type, message->request, PROTO_ERROR_LIMIT, "a file has %lu MiB at most",
                       (unsigned long)(LIMIT_UPLOAD_BYTES >> 20));
         return NULL;
     }

@@ -1,4 +1,4 @@
-/* upload.h: a strand file that comes in pieces.
+/* upload.h: a file that comes in pieces: strands, or a hierarchy.
  *
  * Memory grows with the bytes that have come, never with what a peer announces, and all uploads together have one
  * budget. A complete upload may be used by several CREATEs, each holding a reference while it waits for its worker;

@@ -15,6 +15,7 @@ enum { GROOM_TABLE_PER_SEGMENT = 2 }; /* strand points are bound to this many st
 
 struct awt_groom {
     awt_groom_info info;
+    awt_rebuilt rebuilt;
     arena memory; /* holds every array below */
 
     uint32_t gc_count;                        /* all levels */

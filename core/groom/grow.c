@@ -109,6 +109,7 @@ static void grow_lock(const growth *g, uint32_t number, lock *out)
     start.length_m *= rng_between(&r, 0.9, 1.05);
     path larger;
     path_grow(look, &g->body, &start, &out->way);
+    path_carry_sides(&out->way);
     grow_larger(g, nearest_place(look, start.place, g->larger, g->larger_count), start.length_m, &larger);
     lean(&out->way, &larger, LEAN_TO_LARGER);
     out->wave_phase = rng_between(&r, 0.0, 2.0 * TRIG_PI);
@@ -158,7 +159,7 @@ static void grow_strand(const growth *g, const lock *l, uint32_t number, uint32_
         double arc_m = traits.length_m * (double)i / (double)(points - 1);
         double t = arc_m / l->way.length_m, together = traits.clump * t * (3.0 - t * (3.0 - t));
         dvec3 u, v;
-        dvec3 alone = path_at(&own, arc_m, &u, &v), axis = path_at(&l->way, arc_m, &u, &v);
+        dvec3 alone = path_place(&own, arc_m), axis = path_at(&l->way, arc_m, &u, &v);
         dvec3 point = dvec3_mad(alone, dvec3_sub(axis, alone), together);
         point = dvec3_add(point, ornament(l, &traits, arc_m, u, v));
         point = i > 0 ? figure_clear(&g->body, point, LEAST_CLEARANCE_M) : own.point[0];

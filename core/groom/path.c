@@ -61,20 +61,6 @@ static dvec3 aim_at(const style_look *look, const path_start *start, dvec3 point
     return dvec3_unit(aim, normal);
 }
 
-/* Cross directions carried along the path: each is the one before, made square to the present direction. */
-static void carry_sides(path *way)
-{
-    dvec3 side = {0, 0, 0};
-    for (int i = 0; i <= PATH_STEPS; i++) {
-        int ahead = i < PATH_STEPS ? i + 1 : i, back = i > 0 ? i - 1 : 0;
-        dvec3 along = dvec3_unit(dvec3_sub(way->point[ahead], way->point[back]), (dvec3){0, -1, 0});
-        dvec3 fresh = fabs(along.x) < 0.6 ? (dvec3){1, 0, 0} : (dvec3){0, 0, 1};
-        dvec3 other = dvec3_unit(without(fresh, along), (dvec3){0, 1, 0});
-        side = dvec3_unit(without(side, along), other);
-        way->side[i] = side;
-    }
-}
-
 void path_grow(const style_look *look, const figure *body, const path_start *start, path *out)
 {
     const double step_m = start->length_m / PATH_STEPS;
@@ -95,14 +81,42 @@ void path_grow(const style_look *look, const figure *body, const path_start *sta
         point = dvec3_mad(point, direction, step_m);
         out->point[i] = point;
     }
-    carry_sides(out);
+}
+
+/* Cross directions carried along the path: each is the one before, made square to the present direction. */
+void path_carry_sides(path *way)
+{
+    dvec3 side = {0, 0, 0};
+    for (int i = 0; i <= PATH_STEPS; i++) {
+        int ahead = i < PATH_STEPS ? i + 1 : i, back = i > 0 ? i - 1 : 0;
+        dvec3 along = dvec3_unit(dvec3_sub(way->point[ahead], way->point[back]), (dvec3){0, -1, 0});
+        dvec3 fresh = fabs(along.x) < 0.6 ? (dvec3){1, 0, 0} : (dvec3){0, 0, 1};
+        dvec3 other = dvec3_unit(without(fresh, along), (dvec3){0, 1, 0});
+        side = dvec3_unit(without(side, along), other);
+        way->side[i] = side;
+    }
+}
+
+/* The piece that `arc_m` is on, and the share of it that is behind. */
+static int piece_at(const path *way, double arc_m, double *share)
+{
+    double place = clamp_unit(arc_m / way->length_m) * PATH_STEPS;
+    int i = (int)place < PATH_STEPS ? (int)place : PATH_STEPS - 1;
+    *share = place - i;
+    return i;
+}
+
+dvec3 path_place(const path *way, double arc_m)
+{
+    double share;
+    int i = piece_at(way, arc_m, &share);
+    return dvec3_mad(way->point[i], dvec3_sub(way->point[i + 1], way->point[i]), share);
 }
 
 dvec3 path_at(const path *way, double arc_m, dvec3 *across_u, dvec3 *across_v)
 {
-    double place = clamp_unit(arc_m / way->length_m) * PATH_STEPS;
-    int i = (int)place < PATH_STEPS ? (int)place : PATH_STEPS - 1;
-    double share = place - i;
+    double share;
+    int i = piece_at(way, arc_m, &share);
     dvec3 piece = dvec3_sub(way->point[i + 1], way->point[i]);
     dvec3 side = dvec3_mad(dvec3_scale(way->side[i], 1.0 - share), way->side[i + 1], share);
     dvec3 along = dvec3_unit(piece, (dvec3){0, -1, 0});

@@ -20,12 +20,16 @@ typedef struct path_start {
 typedef struct path {
     double length_m;
     dvec3 point[PATH_STEPS + 1]; /* evenly spaced */
-    dvec3 side[PATH_STEPS + 1];  /* at right angles to the path, turning no more than it does */
+    dvec3 side[PATH_STEPS + 1]; /* at right angles to the path, turning no more than it does; set by path_carry_sides */
 } path;
 
+/* Without sides: most paths need none. */
 void path_grow(const style_look *look, const figure *body, const path_start *start, path *out);
+void path_carry_sides(path *way);
 
-/* The path's place `arc_m` from the root, with its two cross directions. */
+/* The path's place `arc_m` from the root. */
+dvec3 path_place(const path *way, double arc_m);
+/* The same with its two cross directions. */
 dvec3 path_at(const path *way, double arc_m, dvec3 *across_u, dvec3 *across_v);
 
 #endif

@@ -57,12 +57,30 @@ static awt_status check_positions(const awt_strands *strands, awt_error *error)
     return AWT_OK;
 }
 
-static awt_status check_def(const awt_groom_def *def, awt_error *error)
+static awt_status check_levels(uint32_t levels, awt_error *error)
 {
-    if (def->levels < 1 || def->levels > AWT_MAX_LEVELS) {
-        return error_set(error, AWT_BAD_VALUE, "%lu levels; a groom has 1 to %d", (unsigned long)def->levels,
+    if (levels < 1 || levels > AWT_MAX_LEVELS) {
+        return error_set(error, AWT_BAD_VALUE, "%lu levels; a groom has 1 to %d", (unsigned long)levels,
                          AWT_MAX_LEVELS);
     }
+    return AWT_OK;
+}
+
+/* What says how many wisps there are to be. */
+static awt_status check_wisps(const awt_groom_def *def, awt_error *error)
+{
+    if (def->hierarchy) {
+        return check_levels(def->hierarchy->levels, error);
+    }
+    if (def->finest_wisps != 0 && def->top_wisps > def->finest_wisps) {
+        return error_set(error, AWT_BAD_VALUE, "%lu top wisps cannot be refined into %lu finest wisps",
+                         (unsigned long)def->top_wisps, (unsigned long)def->finest_wisps);
+    }
+    return check_levels(def->levels, error);
+}
+
+static awt_status check_def(const awt_groom_def *def, awt_error *error)
+{
     if (def->sections != 0 && (def->sections < 2 || def->sections > AWT_MAX_SECTIONS)) {
         return error_set(error, AWT_BAD_VALUE, "%lu sections; a wisp has 2 to %d, or 0 for a fitting number",
                          (unsigned long)def->sections, AWT_MAX_SECTIONS);
@@ -71,14 +89,10 @@ static awt_status check_def(const awt_groom_def *def, awt_error *error)
         return error_set(error, AWT_BAD_VALUE, "%lu points per strand; a strand has 2 to %d, or 0 for the file's own",
                          (unsigned long)def->points_per_strand, AWT_MAX_POINTS_PER_STRAND);
     }
-    if (def->finest_wisps != 0 && def->top_wisps > def->finest_wisps) {
-        return error_set(error, AWT_BAD_VALUE, "%lu top wisps cannot be refined into %lu finest wisps",
-                         (unsigned long)def->top_wisps, (unsigned long)def->finest_wisps);
-    }
     if (!(def->head_radius_m > 0.0 && def->head_radius_m <= (double)FARTHEST_POINT_M)) {
         return error_set(error, AWT_BAD_VALUE, "a head of radius %g m; it must be more than 0", def->head_radius_m);
     }
-    return AWT_OK;
+    return check_wisps(def, error);
 }
 
 static uint32_t at_least_one(uint32_t value)
@@ -133,8 +147,9 @@ static uint32_t refine_count(uint32_t above, uint32_t finest, uint32_t refinemen
     return count;
 }
 
-static void choose_wisps(const awt_groom_def *def, groom_plan *plan)
+void plan_choose_wisps(const awt_groom_def *def, groom_plan *plan)
 {
+    plan->levels = def->levels;
     uint32_t by_strands = plan->strand_count / CHOSEN_STRANDS_PER_WISP;
     uint32_t by_nodes = CHOSEN_FINEST_NODES / plan->sections;
     uint32_t chosen = at_least_one(by_strands < by_nodes ? by_strands : by_nodes);
@@ -175,15 +190,11 @@ awt_status plan_make(const awt_strands *strands, const awt_groom_def *def, groom
     if (status != AWT_OK) {
         return status;
     }
-    groom_plan plan = {.strand_count = strands->strand_count, .levels = def->levels};
+    groom_plan plan = {.strand_count = strands->strand_count};
     uint32_t largest = largest_point_count(strands);
     plan.points_per_strand = def->points_per_strand ? def->points_per_strand : largest;
     plan.sections = def->sections ? def->sections : choose_sections(strands);
     plan.head_radius_m = def->head_radius_m;
-    choose_wisps(def, &plan);
-    status = plan_check_sizes(&plan, error);
-    if (status == AWT_OK) {
-        *out = plan;
-    }
-    return status;
+    *out = plan;
+    return AWT_OK;
 }

@@ -77,6 +77,7 @@ static void strands_copy(const read_layout *layout, awt_strands *out)
         uint32_t points = strand_points(layout, strand);
         strand_check(layout, strand, first, &usable, NULL);
         if (usable) {
+            out->file_strand[kept] = strand;
             out->first_point[kept++] = used;
             for (uint32_t i = 0; i < points; i++) {
                 point_load(layout, first + i, out->positions + 3 * (size_t)used++);
@@ -112,7 +113,8 @@ awt_status awt_strands_read(const void *bytes, size_t size, awt_strands *out, aw
     }
     strands.first_point = malloc(((size_t)strands.strand_count + 1) * sizeof *strands.first_point);
     strands.positions = malloc((size_t)strands.point_count * 3 * sizeof *strands.positions);
-    if (!strands.first_point || !strands.positions) {
+    strands.file_strand = malloc(strands.strand_count * sizeof *strands.file_strand);
+    if (!strands.first_point || !strands.positions || !strands.file_strand) {
         awt_strands_fini(&strands);
         return error_set(error, AWT_NO_MEMORY, NULL);
     }
@@ -125,5 +127,6 @@ void awt_strands_fini(awt_strands *strands)
 {
     free(strands->first_point);
     free(strands->positions);
+    free(strands->file_strand);
     *strands = (awt_strands){0};
 }

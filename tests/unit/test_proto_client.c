@@ -51,6 +51,23 @@ static void fake_upload(fake *self, uint64_t request)
     script_send(self, &reply);
 }
 
+/* CREATE: PROGRESS twice, if it is wanted, and once of another CREATE. */
+static void fake_create(fake *self, uint64_t request)
+{
+    proto_message progress = {.type = PROTO_PROGRESS, .request = request + 1000};
+    progress.as.progress.stage = 3;
+    script_send(self, &progress);
+    progress.request = request;
+    for (int n = 1; n <= 2 && self->got.as.create.progress; n++) {
+        progress.as.progress.stage = (uint8_t)n;
+        progress.as.progress.share = 0.25f * (float)n;
+        script_send(self, &progress);
+    }
+    proto_message reply = {.type = PROTO_CREATE_REPLY, .request = request};
+    reply.as.create_reply.forest = 42;
+    script_send(self, &reply);
+}
+
 static void fake_serve(fake *self)
 {
     while (fake_read(self)) {
@@ -67,6 +84,9 @@ static void fake_serve(fake *self)
             break;
         case PROTO_UPLOAD:
             fake_upload(self, request);
+            break;
+        case PROTO_CREATE:
+            fake_create(self, request);
             break;
         case PROTO_MOTION:
             self->motions++;
@@ -249,6 +269,32 @@ TEST(client_uploads_a_file_in_pieces)
     auth_sha256_add(&hash, file_bytes, sizeof file_bytes);
     auth_sha256_done(&hash, here);
     CHECK_BYTES(there, here, sizeof here);
+}
+
+static void note_progress(void *context, const struct proto_progress *progress)
+{
+    double *sum = context;
+    *sum += 10 * progress->stage + (double)progress->share;
+}
+
+TEST(client_hears_how_far_a_create_has_come_if_it_wants_to)
+{
+    fake server;
+    awtclient_error error = {.code = 0};
+    CHECK(fake_start(&server, script_open_door));
+    awtclient *client = fake_open(&server, NULL, LONG_MS, &error);
+    proto_message request = {.type = PROTO_CREATE}, answer;
+    request.as.create.head.orientation[3] = request.as.create.body.orientation[3] = 1;
+    double heard = 0;
+    CHECK(client && awtclient_create(client, &request, &answer, note_progress, &heard, &error));
+    CHECK_NEAR(heard, 10.25 + 20.5, 0);
+    CHECK_U64(client ? answer.as.create_reply.forest : 0, 42);
+    request.request = 0; /* still wants it, but asks in the plain way: what nobody listens to is passed over */
+    CHECK(client && awtclient_call(client, &request, &answer, &error));
+    CHECK_U64(client ? answer.as.create_reply.forest : 0, 42);
+    CHECK_NEAR(heard, 10.25 + 20.5, 0);
+    awtclient_close(client);
+    fake_stop(&server);
 }
 
 TEST(client_door_fails_with_words_that_help)

@@ -224,6 +224,12 @@ static void example_create_reply(proto_message *m)
     c->scale = 1;
     c->up = 1;
     c->head_radius = c->head_radius_m = 0.095;
+    c->rebuilt_max_m = 1.0f / (1 << 24);
+    c->rebuilt_mean_m = 1.0f / (1 << 28);
+    c->wisp_levels.count = 3;
+    c->wisp_levels.items[0] = (struct proto_wisp_level){.wisps = 48, .mean_radius_m = 0.03125f};
+    c->wisp_levels.items[1] = (struct proto_wisp_level){.wisps = 170, .mean_radius_m = 0.015625f};
+    c->wisp_levels.items[2] = (struct proto_wisp_level){.wisps = 600, .mean_radius_m = 0.0078125f};
     c->colliders.count = 1;
     c->colliders.items[0] = (struct proto_collider){.id = 1, .radius_a = 0.09375f, .radius_b = 0.09375f};
     c->build_us = 250000;
