@@ -3,7 +3,6 @@
  * are followed closely. */
 #include "check.h"
 #include "groom_fixture.h"
-#include "invariant_fixture.h"
 
 #include "base/assert.h"
 #include "base/trig.h"
