@@ -75,6 +75,7 @@ static void check_stepping(const char *style)
     awt_forest *f = small_forest(groom, &params);
     strand_points now = strand_points_of(f);
     wild w = wild_make(31, 1.5);
+    params.contact = 0; /* of the rest after the motion */
     other = params;
     other.wind_x = 2;
     awt_step_stats stats, sums = {0};
@@ -93,11 +94,11 @@ static void check_stepping(const char *style)
         strand_points_read(&now, f);
         awt_forest_hash(f);
     }
-    for (int n = 0; n < 3; n++) { /* still, woken by the wind, still again */
-        awt_forest_advance(f, awt_forest_time(f) + 25000000, &stats, &error);
+    for (int n = 0; n < 3; n++) { /* still, woken by a parameter, still again */
+        awt_forest_set_params(f, n % 2 ? &other : &params, &error);
+        awt_forest_advance(f, awt_forest_time(f) + 8000000, &stats, &error);
         sums.merges += stats.merges;
         sums.asleep_trees += stats.asleep_trees;
-        awt_forest_set_params(f, n % 2 ? &params : &other, &error);
     }
     awt_forest_advance(f, 0, &stats, &error); /* refused */
     unsigned counted = count_end();

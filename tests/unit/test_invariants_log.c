@@ -131,6 +131,7 @@ static void check_log(const char *style, bool contact)
     event *events = malloc(groom->gc_count * sizeof *events);
     ASSERT(before && events);
     wild w = wild_make(21, 1.2);
+    float worst_link = 0;
     for (int n = 1; n <= 250; n++) {
         memcpy(before, f->first_split, groom->gc_count * sizeof *before);
         awt_step_stats stats;
@@ -150,6 +151,7 @@ static void check_log(const char *style, bool contact)
             tips += events[k].split && events[k].section == sections - 1;
         }
         CHECK_INT(step_splits, stats.splits);
+        worst_link = stats.link_error > worst_link ? stats.link_error : worst_link;
         CHECK_INT(count - step_splits, stats.merges);
         CHECK_INT(replay_differences(&r, f), 0);
         CHECK_INT(replay_ungoverned(&r), 0);
@@ -159,6 +161,7 @@ static void check_log(const char *style, bool contact)
     CHECK(splits > 100);
     CHECK(merges > 100);
     CHECK(tips > 20);
+    CHECK_NEAR(worst_link, 0, 1e-5); /* invariant 8: rigid links, whatever touches them */
     CHECK_INT(odd, 0);
     CHECK_INT(under, 0);
     CHECK_INT(r.impossible, 0);
