@@ -36,6 +36,7 @@ SRC_bench := $(wildcard tests/bench/*.c)
 HEADERS := $(wildcard $(foreach r,core proto server clients tests,$(r)/*.h $(r)/*/*.h))
 SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_unit) $(SRC_bench)
 
+, := ,
 objects = $(patsubst %,$(B)/obj/%.o,$(1))
 LIBAWT := $(B)/libawt.a
 LIBPROTO := $(B)/libawtproto.a
@@ -67,9 +68,11 @@ $(B)/awtd: $(B)/obj/server/main.c.o $(LIBSERVER) $(LIBAWT) $(LIBPROTO)
 $(B)/awtctl: $(call objects,$(SRC_awtctl)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/tests: $(call objects,$(SRC_unit)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+# The tests count what the heap is asked for (tests/unit/test_allocation.c): the linker leads these calls there.
+$(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_alloc posix_memalign free)
 $(PROGRAMS) $(B)/tests:
 	@echo "  LD   $@"
-	$(Q)$(CXX) $(FLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS_ALL)
+	$(Q)$(CXX) $(FLAGS) $(WRAP) $(LDFLAGS) -o $@ $^ $(LDLIBS_ALL)
 
 $(LIBAWT): $(call objects,$(SRC_core))
 $(LIBPROTO): $(call objects,$(SRC_proto))

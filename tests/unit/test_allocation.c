@@ -1,0 +1,120 @@
+/* test_allocation.c: stepping takes no memory and gives none back. The build has the linker pass every call of the heap
+ * that the library makes through here (Makefile: WRAP), whatever heap is behind it, the sanitizers' own included. */
+#include "check.h"
+#include "invariant_fixture.h"
+
+#include "base/assert.h"
+
+#include <stdlib.h>
+
+/* Calls by the present thread since count_begin; the tests' own threads go uncounted. */
+static _Thread_local bool counting;
+static _Thread_local unsigned calls;
+
+#define WRAPPED(type, name, parameters, arguments) \
+    type __real_##name parameters;                 \
+    type __wrap_##name parameters;                 \
+    type __wrap_##name parameters                  \
+    {                                              \
+        calls += counting;                         \
+        return __real_##name arguments;            \
+    }
+
+WRAPPED(void *, malloc, (size_t size), (size))
+WRAPPED(void *, calloc, (size_t count, size_t size), (count, size))
+WRAPPED(void *, realloc, (void *block, size_t size), (block, size))
+WRAPPED(void *, aligned_alloc, (size_t alignment, size_t size), (alignment, size))
+WRAPPED(int, posix_memalign, (void **block, size_t alignment, size_t size), (block, alignment, size))
+
+void __real_free(void *block);
+void __wrap_free(void *block);
+void __wrap_free(void *block)
+{
+    calls += counting;
+    __real_free(block);
+}
+
+static void count_begin(void)
+{
+    calls = 0;
+    counting = true;
+}
+
+static unsigned count_end(void)
+{
+    counting = false;
+    return calls;
+}
+
+/* Were the count always 0, the other test would say nothing. */
+TEST(the_heap_is_counted_where_it_is_used)
+{
+    awt_params params = small_params("short");
+    awt_groom *groom = small_groom("short", 1);
+    awt_forest_def def = awt_forest_def_default(groom);
+    def.params = params;
+    awt_forest *f = NULL;
+    count_begin();
+    awt_status status = awt_forest_create(groom, &def, &f, NULL);
+    CHECK(count_end() >= 2);
+    CHECK_INT(status, AWT_OK);
+    count_begin();
+    awt_forest_destroy(f);
+    CHECK(count_end() >= 2);
+    awt_groom_destroy(groom);
+}
+
+/* Everything that may happen while stepping happens: splits, merges, contact, sleep and waking, a teleport, refusals.
+ */
+static void check_stepping(const char *style)
+{
+    awt_groom *groom = small_groom(style, 2);
+    awt_params params = small_params(style), other;
+    params.contact = 1;
+    params.split_threshold = 0.1f;
+    awt_forest *f = small_forest(groom, &params);
+    strand_points now = strand_points_of(f);
+    wild w = wild_make(31, 1.5);
+    params.contact = 0; /* of the rest after the motion */
+    other = params;
+    other.wind_x = 2;
+    awt_step_stats stats, sums = {0};
+    awt_error error;
+    awt_motion m;
+    count_begin();
+    for (int n = 1; n <= 60; n++) {
+        m = wild_at(&w, (int64_t)n * 2 * AWT_STEP_US);
+        m.teleport = n == 20;
+        m.head.position[0] += n >= 20 ? 3.0 : 0.0;
+        awt_forest_move(f, &m, NULL);
+        awt_forest_move(f, &m, &error); /* refused: no time has passed */
+        awt_forest_advance(f, m.time_us, &stats, NULL);
+        sums.splits += stats.splits;
+        sums.contacts += stats.contacts;
+        strand_points_read(&now, f);
+        awt_forest_hash(f);
+    }
+    for (int n = 0; n < 3; n++) { /* still, woken by a parameter, still again */
+        awt_forest_set_params(f, n % 2 ? &other : &params, &error);
+        awt_forest_advance(f, awt_forest_time(f) + 8000000, &stats, &error);
+        sums.merges += stats.merges;
+        sums.asleep_trees += stats.asleep_trees;
+    }
+    awt_forest_advance(f, 0, &stats, &error); /* refused */
+    unsigned counted = count_end();
+    CHECK_INT(counted, 0);
+    CHECK(sums.splits > 50);
+    CHECK(sums.merges > 50);
+    CHECK(sums.contacts > 1000);
+    CHECK(sums.asleep_trees > 0);
+    CHECK_INT(error.status, AWT_BAD_TIME);
+    strand_points_fini(&now);
+    awt_forest_destroy(f);
+    awt_groom_destroy(groom);
+}
+
+TEST(stepping_allocates_nothing)
+{
+    check_stepping("long");
+    check_stepping("short-curly");
+}
