@@ -40,7 +40,7 @@ void contact_lay_out(awt_forest *f, arena *a, size_t slots)
     f->segments = ARENA_PUSH(a, segment, slots);
     f->ends = ARENA_PUSH(a, segment_ends, slots);
     f->segment_box = ARENA_PUSH(a, grid_box, slots);
-    f->contacts = ARENA_PUSH(a, contact, contacts + GRID_PAIRS); /* a whole call of touch_find past the last */
+    f->contacts = ARENA_PUSH(a, wisp_contact, contacts + GRID_PAIRS); /* a whole call of touch_find past the last */
     f->contact_capacity = (uint32_t)contacts;
     grid_lay_out(&f->grid, a, slots);
 }
@@ -120,11 +120,11 @@ static uint32_t contact_collect(awt_forest *f, bool moving, float speed2, uint32
 /* ---- pairs ------------------------------------------------------------------------------------------------------- */
 
 /* Adds each contact's part of the loads of its four nodes. */
-static void contact_weigh(awt_forest *f, const contact *contacts, uint32_t count)
+static void contact_weigh(awt_forest *f, const wisp_contact *contacts, uint32_t count)
 {
     const struct contact_node *node = f->contact_nodes;
     for (uint32_t n = 0; n < count; n++) {
-        const contact *c = &contacts[n];
+        const wisp_contact *c = &contacts[n];
         for (int side = 0; side < 2; side++) {
             segment_ends of = c->of[side];
             f->contact_load[of.parent] += (1.0f - c->on[side]) * c->mass * node[of.parent].inverse_mass;
@@ -153,9 +153,10 @@ static void contact_take(void *context, const grid_pair *pairs, uint32_t count)
 /* A sleeping tree that something rubs against wakes. */
 static void contact_wake(awt_forest *f, uint32_t count)
 {
+    const float speed = rest_waking_speed(f);
     for (uint32_t n = 0; n < count; n++) {
-        const contact *c = &f->contacts[n];
-        if (vec3_dot(c->velocity, c->velocity) >= REST_WAKING_SPEED_M_S * REST_WAKING_SPEED_M_S) {
+        const wisp_contact *c = &f->contacts[n];
+        if (vec3_dot(c->velocity, c->velocity) >= speed * speed) {
             rest_wake(f, c->of[0].child);
             rest_wake(f, c->of[1].child);
         }
@@ -165,7 +166,7 @@ static void contact_wake(awt_forest *f, uint32_t count)
 /* ---- response ---------------------------------------------------------------------------------------------------- */
 
 /* N of this file's head. */
-static float contact_greatest_load(const awt_forest *f, const contact *c)
+static float contact_greatest_load(const awt_forest *f, const wisp_contact *c)
 {
     const float *load = f->contact_load;
     float first = grid_most(load[c->of[0].child], load[c->of[0].parent]);
@@ -178,7 +179,7 @@ static void contact_push(awt_forest *f, uint32_t count, const contact_rule *rule
 {
     const struct contact_node *node = f->contact_nodes;
     for (uint32_t n = 0; n < count; n++) {
-        const contact *c = &f->contacts[n];
+        const wisp_contact *c = &f->contacts[n];
         float twice = 2.0f * contact_greatest_load(f, c), x = rule->friction * twice, y = rule->repulsion * twice;
         float friction = (x + 0.5f * x * x) / (twice * (1.0f + x + 0.5f * x * x));
         float repulsion = rule->repulsion * rule->per_dt / (1.0f + y);

@@ -10,6 +10,7 @@
 #include "sim/embed.h"
 
 #define REST_SPEED_M_S 0.01f
+#define REST_SPEED_MOST_M_S 0.05f
 #define REST_PATIENCE_S 1.0f        /* from here on more speed is quiet */
 #define REST_HEAD_SPIN 0.02f        /* rad/s */
 #define REST_HEAD_ACCELERATION 0.1f /* m/s2 */
@@ -37,7 +38,7 @@ static bool obstacles_are_still(const awt_forest *f)
 static float quiet_speed(const awt_forest *f)
 {
     float speed = REST_SPEED_M_S * f->still_s / REST_PATIENCE_S;
-    return speed < REST_SPEED_M_S ? REST_SPEED_M_S : speed > REST_WAKING_SPEED_M_S ? REST_WAKING_SPEED_M_S : speed;
+    return speed < REST_SPEED_M_S ? REST_SPEED_M_S : speed > REST_SPEED_MOST_M_S ? REST_SPEED_MOST_M_S : speed;
 }
 
 bool rest_world_is_still(awt_forest *f, float dt_s)
@@ -124,6 +125,11 @@ void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s)
     for (uint32_t k = t->first; k < t->first + t->count; k++) {
         f->velocity[f->active_node[k]] = f->acceleration[f->active_node[k]] = (vec3){0, 0, 0};
     }
+}
+
+float rest_waking_speed(const awt_forest *f)
+{
+    return 2.0f * quiet_speed(f);
 }
 
 void rest_wake(awt_forest *f, uint32_t slot)

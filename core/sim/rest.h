@@ -28,8 +28,8 @@ void rest_carry(awt_forest *f, dquat from, dquat to, bool sleepers_only);
 
 void rest_wake_all(awt_forest *f);
 
-/* What moves faster than this against a sleeping tree wakes it. */
-#define REST_WAKING_SPEED_M_S 0.05f
+/* What moves faster than this against a sleeping tree wakes it: twice what would still be quiet. */
+float rest_waking_speed(const awt_forest *f);
 
 /* Wakes the tree of an active slot. */
 void rest_wake(awt_forest *f, uint32_t slot);

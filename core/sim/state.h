@@ -45,7 +45,7 @@ typedef struct obstacle {
 
 typedef struct segment segment; /* touch.h */
 typedef struct segment_ends segment_ends;
-typedef struct contact contact;
+typedef struct wisp_contact wisp_contact;
 
 struct awt_forest {
     const awt_groom *groom;
@@ -115,7 +115,7 @@ struct awt_forest {
     segment *segments;                  /* [slots]; of this sub-step, the moving ones first (touch.h) */
     segment_ends *ends;                 /* [slots]; of the same segments */
     grid_box *segment_box;              /* [slots] */
-    contact *contacts;                  /* pairs in contact in this sub-step (touch.h) */
+    wisp_contact *contacts;             /* pairs in contact in this sub-step (touch.h) */
     uint32_t contact_capacity;
     uint32_t contacts_left_out; /* in this sub-step: those beyond contact_capacity, which had no effect */
     grid grid;

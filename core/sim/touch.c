@@ -10,6 +10,8 @@
 #include "base/lanes.h"
 #include "base/nearest.h"
 
+#define TOUCH_ANGLE_RAMP 0.1f
+
 /* One side of LANES pairs. */
 typedef struct lane_segments {
     lanes3 from, along;
@@ -143,7 +145,7 @@ static float rest_distance(const awt_forest *f, segment_ends a, segment_ends b)
 
 /* Eq. (2)'s (r - d) (P1 - P2) / |P1 - P2| of segments that cross. Hair rests overlapping: two wisps are pushed no
  * farther apart than they rest, or their style and this would fight for ever. */
-static vec3 overlap_of(const awt_forest *f, const segment *a, const segment *b, const contact *c)
+static vec3 overlap_of(const awt_forest *f, const segment *a, const segment *b, const wisp_contact *c)
 {
     const vec3 none = {0, 0, 0};
     vec3 apart = vec3_sub(vec3_mad(a->from, a->along, c->on[0]), vec3_mad(b->from, b->along, c->on[1]));
@@ -157,25 +159,31 @@ static vec3 overlap_of(const awt_forest *f, const segment *a, const segment *b, 
     return vec3_scale(away, wanted - d);
 }
 
-/* Repulsion sets in gradually with the relative motion that makes it a contact: if it came all at once, two wisps that
- * their style holds in each other would kick each other for ever. */
-static contact contact_of(const awt_forest *f, const grid_pair *pairs, uint32_t place, float least_speed2,
-                          const touch_work *w)
+/* What decides sets in gradually, forces with the relative motion that makes it a contact and repulsion with the angle,
+ * over TOUCH_ANGLE_RAMP of its cosine squared: if it came all at once, two wisps that their style holds in each other
+ * would kick each other for ever, and rounding would decide over millimetres. */
+static wisp_contact contact_of(const awt_forest *f, const grid_pair *pairs, uint32_t place, const touch_rule *rule,
+                               const touch_work *w)
 {
     uint32_t n = w->met[place];
     const segment *a = &f->segments[pairs[n].a], *b = &f->segments[pairs[n].b];
-    contact c = {.of = {f->ends[pairs[n].a], f->ends[pairs[n].b]},
-                 .on = {w->on_a[n], w->on_b[n]},
-                 .mass = a->mass < b->mass ? a->mass : b->mass,
-                 .velocity = {w->velocity[0][place], w->velocity[1][place], w->velocity[2][place]}};
+    vec3 velocity = {w->velocity[0][place], w->velocity[1][place], w->velocity[2][place]};
+    float onset = 1.0f - rule->least_speed2 / vec3_dot(velocity, velocity);
+    wisp_contact c = {.of = {f->ends[pairs[n].a], f->ends[pairs[n].b]},
+                      .on = {w->on_a[n], w->on_b[n]},
+                      .mass = a->mass < b->mass ? a->mass : b->mass,
+                      .velocity = vec3_scale(velocity, onset)};
     if (w->crossing[n / LANES] >> n % LANES & 1) {
-        float onset = 1.0f - least_speed2 / vec3_dot(c.velocity, c.velocity);
+        float ab = vec3_dot(a->along, b->along);
+        float ramp = rule->cosine2 - ab * ab / (vec3_dot(a->along, a->along) * vec3_dot(b->along, b->along));
+        onset *= ramp < TOUCH_ANGLE_RAMP ? ramp / TOUCH_ANGLE_RAMP : 1.0f;
         c.overlap = vec3_scale(overlap_of(f, a, b, &c), onset);
     }
     return c;
 }
 
-uint32_t touch_find(const awt_forest *f, const touch_rule *rule, const grid_pair *pairs, uint32_t count, contact *out)
+uint32_t touch_find(const awt_forest *f, const touch_rule *rule, const grid_pair *pairs, uint32_t count,
+                    wisp_contact *out)
 {
     touch_work w;
     uint32_t met = 0, rubbing = 0;
@@ -186,7 +194,7 @@ uint32_t touch_find(const awt_forest *f, const touch_rule *rule, const grid_pair
         rubbing += lanes_list(touch_rub(f, pairs, n, met, rule->least_speed2, &w), n, w.rubbing + rubbing);
     }
     for (uint32_t n = 0; n < rubbing; n++) {
-        out[n] = contact_of(f, pairs, w.rubbing[n], rule->least_speed2, &w);
+        out[n] = contact_of(f, pairs, w.rubbing[n], rule, &w);
     }
     return rubbing;
 }

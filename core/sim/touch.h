@@ -25,11 +25,12 @@ struct contact_node {
 };
 
 /* Two segments in contact; P = (1 - on) * N_parent + on * N_child on each axis, eq. (3). */
-struct contact {
+struct wisp_contact {
     segment_ends of[2];
     float on[2];
     float mass;    /* the smaller child's */
-    vec3 velocity; /* of the second's point against the first's: friction pulls the first along it */
+    vec3 velocity; /* of the second's point against the first's, as far as it counts: friction pulls the first along it
+                    */
     vec3 overlap;  /* by which the first is to be pushed away from the second; zero: no repulsion */
 };
 
@@ -41,6 +42,7 @@ typedef struct touch_rule {
 
 /* Writes the contacts among at most GRID_PAIRS pairs of f->segments, in their order, to `out` (room for `count`);
  * returns how many. */
-uint32_t touch_find(const awt_forest *f, const touch_rule *rule, const grid_pair *pairs, uint32_t count, contact *out);
+uint32_t touch_find(const awt_forest *f, const touch_rule *rule, const grid_pair *pairs, uint32_t count,
+                    wisp_contact *out);
 
 #endif

@@ -211,3 +211,26 @@ TEST(wisps_of_a_forest_begin_to_separate_at_the_threshold_angle)
         CHECK(!rods_cross(180 - angle - 3, &params).through);
     }
 }
+
+/* PHYSICS: sleeping trees wake on contact with something that moves. Rod 1 falls asleep while rod 0 is on its way. */
+TEST(a_sleeping_wisp_that_is_hit_wakes_and_takes_its_share_of_the_motion)
+{
+    const dvec3 root[2] = {{-0.3, 0.300, 0}, {0, 0.360, -0.3}}, tip[2] = {{0.3, 0.300, 0}, {0, 0.360, 0.3}};
+    awt_params params = free_params();
+    rods r = rods_make(root, tip, &params);
+    awt_forest *f = r.forest;
+    f->velocity[r.tip[0]].y = 0.08f; /* its middle at half of that: 40 mm to go in 1 s */
+    awt_step_stats stats = {0};
+    bool slept = false;
+    uint32_t contacts = 0;
+    for (int n = 0; n < 1500; n++) {
+        rods_advance(&r, &stats);
+        slept = slept || stats.asleep_trees == 1;
+        contacts += stats.contacts;
+    }
+    CHECK(slept);
+    CHECK(contacts > 50);
+    CHECK_INT(stats.asleep_trees, 0);
+    CHECK(f->velocity[r.tip[1]].y > 0.01f);
+    rods_free(&r);
+}

@@ -243,3 +243,28 @@ TEST(a_teleport_said_or_not_does_nothing_to_swinging_hair)
     CHECK_NEAR(jump_effect_m(0.1, true), 0, 1e-4);
     CHECK(jump_effect_m(0.1, false) > 0.01); /* 10 m/s might be */
 }
+
+/* Invariant 10 with contact: what rests overlapping and crossing must come to rest too. */
+TEST(hair_that_touches_comes_to_rest_and_sleeps)
+{
+    for (size_t s = 0; s < awt_style_count(); s++) {
+        const char *style = awt_style_at(s)->name;
+        awt_groom *groom = small_groom(style, 2);
+        awt_params params = small_params(style);
+        params.contact = 1;
+        awt_forest *f = small_forest(groom, &params);
+        wild w = wild_make(7, 1.0);
+        awt_step_stats stats;
+        for (int n = 1; n <= 150; n++) {
+            wild_advance(f, &w, (int64_t)n * AWT_STEP_US, &stats);
+        }
+        CHECK_INT(awt_forest_advance(f, 26500000, &stats, NULL), AWT_OK);
+        awt_groom_info info;
+        awt_groom_get_info(groom, &info);
+        CHECK_INT(stats.active_nodes, info.coarse_nodes);
+        CHECK_INT(stats.asleep_trees, info.wisp_count[0]);
+        CHECK_NEAR(stats.kinetic_energy_j, 0, 0);
+        awt_forest_destroy(f);
+        awt_groom_destroy(groom);
+    }
+}

@@ -133,7 +133,6 @@ static comparison compare_worlds(const awt_groom *groom, const awt_params *param
     return c;
 }
 
-/* Without rest_gravity: the preload that it asks for is taken from gravity as it lies to an upright head. */
 static awt_params windy_params(const char *style, bool contact)
 {
     awt_params params = small_params(style);
@@ -186,7 +185,7 @@ TEST(hair_does_not_know_how_fast_its_world_goes_nor_where_it_is)
 TEST(hair_does_not_know_how_its_world_is_turned)
 {
     const world askew = {.turn = {0.5, -0.1, 0.7, 0.5}}; /* of length 1 */
-    check_world(&askew, 0);
+    check_world(&askew, 1);
 }
 
 /* What the two tests above would not notice, they could not: gravity or wind left as they were in a turned world. */
@@ -200,5 +199,27 @@ TEST(hair_knows_gravity_and_wind_in_a_turned_world)
     wrong = world_params(&askew, &params);
     wrong.wind_x = params.wind_x, wrong.wind_y = params.wind_y, wrong.wind_z = params.wind_z;
     CHECK(compare_worlds(groom, &params, &askew, &wrong, 91, true).greatest_m > 50 * TOLERANCE_M);
+    awt_groom_destroy(groom);
+}
+
+/* Hair rests as it was drawn, upright; in a world whose gravity lies otherwise, it rests so too, if its head does. */
+TEST(hair_at_rest_does_not_know_how_its_world_is_turned)
+{
+    const world askew = {.turn = {0.5, -0.1, 0.7, 0.5}};
+    awt_groom *groom = small_groom("long", 3);
+    awt_params params = small_params("long");
+    params.rest_gravity = 1;
+    awt_params own = world_params(&askew, &params);
+    awt_forest_def def = awt_forest_def_default(groom);
+    def.params = own;
+    def.start = world_motion(&askew, &def.start);
+    awt_forest *f;
+    ASSERT(awt_forest_create(groom, &def, &f, NULL) == AWT_OK);
+    strand_points rest = strand_points_of(f), now = strand_points_of(f);
+    CHECK_INT(awt_forest_advance(f, 1000000, NULL, NULL), AWT_OK);
+    strand_points_read(&now, f);
+    CHECK_NEAR(strand_points_mean(&rest, &now), 0, 1e-3); /* as it does upright: test_forest.c */
+    strand_points_fini(&rest), strand_points_fini(&now);
+    awt_forest_destroy(f);
     awt_groom_destroy(groom);
 }
