@@ -10,7 +10,7 @@ FLAGS_release := -O2 -g
 FLAGS_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 FLAGS_tsan := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
 FLAGS_coverage := -O0 -g --coverage
-FLAGS := $(FLAGS_$(config)) $(if $(native),-march=native)
+FLAGS := $(FLAGS_$(config)) $(if $(native),-O3 -march=native)
 $(if $(FLAGS),,$(error config is one of debug release asan tsan coverage, not "$(config)"))
 
 # Same bits everywhere: no contraction of a*b+c, no reassociation. (Without errno a square root is one instruction.)

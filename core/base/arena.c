@@ -4,8 +4,6 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-enum { ARENA_ALIGNMENT = 64 };
-
 arena arena_counting(void)
 {
     return (arena){.size = SIZE_MAX};
@@ -26,6 +24,12 @@ bool arena_init(arena *a, size_t size)
     a->base = (unsigned char *)a->block + (past ? ARENA_ALIGNMENT - past : 0);
     a->size = rounded;
     return true;
+}
+
+arena arena_over(void *block, size_t size)
+{
+    size_t past = (uintptr_t)block % ARENA_ALIGNMENT, skipped = past ? ARENA_ALIGNMENT - past : 0;
+    return (arena){.base = (unsigned char *)block + skipped, .size = size - skipped};
 }
 
 void arena_fini(arena *a)

@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+enum { ARENA_ALIGNMENT = 64 }; /* a cache line */
+
 typedef struct arena {
     void *block;         /* from the heap */
     unsigned char *base; /* its first aligned byte; NULL: counting only */
@@ -20,6 +22,9 @@ arena arena_counting(void);
 /* Takes a block of `size` bytes from the heap, zeroed (lazily where the system can: what is never touched costs only
  * addresses). False: no memory. */
 bool arena_init(arena *a, size_t size);
+/* An arena in memory of the caller's, `size` bytes, ARENA_ALIGNMENT or more: up to that many of them go to alignment.
+ * Not for arena_fini. */
+arena arena_over(void *block, size_t size);
 /* Accepts a zeroed arena. */
 void arena_fini(arena *a);
 /* `count` elements of `element` bytes, aligned to a cache line, zeroed; NULL where they do not fit (and

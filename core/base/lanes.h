@@ -165,4 +165,27 @@ static inline lanes lanes3_dot(lanes3 a, lanes3 b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/* LANES points x y z, one after the other. */
+static inline void lanes3_store(float *to, lanes3 a)
+{
+#if defined(__AVX__)
+    lanes xy = __builtin_shufflevector(a.x, a.y, 0, 8, 2, 10, 4, 12, 6, 14); /* x0 y0 x2 y2 */
+    lanes yz = __builtin_shufflevector(a.y, a.z, 1, 9, 3, 11, 5, 13, 7, 15); /* y1 z1 y3 z3 */
+    lanes zx = __builtin_shufflevector(a.z, a.x, 0, 9, 2, 11, 4, 13, 6, 15); /* z0 x1 z2 x3 */
+    lanes p = __builtin_shufflevector(xy, zx, 0, 1, 8, 9, 4, 5, 12, 13);     /* x0 y0 z0 x1 */
+    lanes q = __builtin_shufflevector(yz, xy, 0, 1, 10, 11, 4, 5, 14, 15);   /* y1 z1 x2 y2 */
+    lanes r = __builtin_shufflevector(zx, yz, 2, 3, 10, 11, 6, 7, 14, 15);   /* z2 x3 y3 z3 */
+    lanes_store(to, __builtin_shufflevector(p, q, 0, 1, 2, 3, 8, 9, 10, 11));
+    lanes_store(to + 8, __builtin_shufflevector(r, p, 0, 1, 2, 3, 12, 13, 14, 15));
+    lanes_store(to + 16, __builtin_shufflevector(q, r, 4, 5, 6, 7, 12, 13, 14, 15));
+#else
+    lanes xy = __builtin_shufflevector(a.x, a.y, 0, 4, 2, 6);
+    lanes yz = __builtin_shufflevector(a.y, a.z, 1, 5, 3, 7);
+    lanes zx = __builtin_shufflevector(a.z, a.x, 0, 5, 2, 7);
+    lanes_store(to, __builtin_shufflevector(xy, zx, 0, 1, 4, 5));
+    lanes_store(to + 4, __builtin_shufflevector(yz, xy, 0, 1, 6, 7));
+    lanes_store(to + 8, __builtin_shufflevector(zx, yz, 2, 3, 6, 7));
+#endif
+}
+
 #endif

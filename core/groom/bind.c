@@ -1,73 +1,27 @@
-/* bind.c: each strand attached to its finest GC (AWT §2.2). The search for a point's station begins at the same way
- * from the root, counted in the mean length of the GC's strands, and goes on to the nearest in space, so that a point
- * lies beside its station and not ahead of it; what is longer than the mean hangs on the last station. */
+/* bind.c: each strand attached to its finest GC (AWT §2.2), point by point: point i at station i, each at the same
+ * share of the way from root to tip. */
 #include "groom/draft.h"
 
 #include "sim/evaluate.h"
 
-enum { BIND_MAX_STATIONS = (AWT_MAX_SECTIONS - 1) * GROOM_TABLE_PER_SEGMENT + 1 };
-
-typedef struct wisp_stations {
-    evaluate_station station[BIND_MAX_STATIONS];
-    uint32_t count;
-    double mean_length_m; /* of the GC's strands: what the last station stands for */
-} wisp_stations;
-
-static uint32_t station_at(const wisp_stations *stations, double arc_m)
+/* Binds the points of strand k to the stations of its GC; returns the largest offset. */
+static float bind_strand(groom_draft *build, uint32_t k, const evaluate_table *stations)
 {
-    const uint32_t last = stations->count - 1;
-    if (!(arc_m < stations->mean_length_m)) {
-        return stations->mean_length_m > 0.0 ? last : 0;
-    }
-    return (uint32_t)(arc_m / stations->mean_length_m * last + 0.5);
-}
-
-/* From station `at` on downhill to the one nearest to `point`: locally, so that a curl that passes by is no match. */
-static uint32_t nearest_station(const wisp_stations *stations, uint32_t at, vec3 point)
-{
-    float here = vec3_distance(point, evaluate_centre(&stations->station[at]));
-    for (int step = -1; step <= 1; step += 2) {
-        for (;;) {
-            uint32_t next = at + (uint32_t)step; /* below 0 it wraps past the end */
-            if (next >= stations->count || vec3_distance(point, evaluate_centre(&stations->station[next])) >= here) {
-                break;
-            }
-            at = next;
-            here = vec3_distance(point, evaluate_centre(&stations->station[at]));
-        }
-    }
-    return at;
-}
-
-/* Binds the points of strand k; returns the largest offset. */
-static float bind_strand(groom_draft *build, uint32_t k, const wisp_stations *stations)
-{
-    awt_groom *groom = build->groom;
-    const uint32_t points = groom->info.points_per_strand;
+    const uint32_t points = build->groom->info.points_per_strand;
+    float *offset = build->groom->strand_offset + (size_t)k * 3 * points;
     polyline line;
     vec3 own[AWT_MAX_POINTS_PER_STRAND];
     draft_measure(build, k, &line);
+    build->length_m[k] = polyline_length(&line);
     polyline_resample(&line, points, own);
-    polyline_measure(&line, &own[0].x, points);
     float largest = 0.0f;
     for (uint32_t i = 0; i < points; i++) {
-        uint32_t at = i > 0 ? nearest_station(stations, station_at(stations, line.arc_m[i]), own[i]) : 0;
-        const evaluate_station *station = &stations->station[at];
-        vec3 offset = mat3_apply_transposed(evaluate_frame(station), vec3_sub(own[i], evaluate_centre(station)));
-        groom->strand_station[(size_t)k * points + i] = (uint16_t)at;
-        groom->strand_offset[(size_t)k * points + i] = offset;
-        largest = vec3_length(offset) > largest ? vec3_length(offset) : largest;
+        vec3 away = vec3_sub(own[i], evaluate_centre(stations, i));
+        vec3 here = mat3_apply_transposed(evaluate_frame(stations, i), away);
+        offset[i] = here.x, offset[points + i] = here.y, offset[2 * points + i] = here.z;
+        largest = vec3_length(here) > largest ? vec3_length(here) : largest;
     }
     return largest;
-}
-
-static void measure_strands(groom_draft *build)
-{
-    polyline line;
-    for (uint32_t k = 0; k < build->groom->info.strand_count; k++) {
-        draft_measure(build, k, &line);
-        build->length_m[k] = polyline_length(&line);
-    }
 }
 
 static double wisp_length(const vec3 *centres, uint32_t sections)
@@ -79,36 +33,44 @@ static double wisp_length(const vec3 *centres, uint32_t sections)
     return length;
 }
 
-static void bind_wisp(groom_draft *build, uint32_t w)
+/* Binds the strands of finest GC `w`; takes the GC's length and the largest offset into `length_m` and `largest_m`. */
+static void bind_wisp(groom_draft *build, uint32_t w, evaluate_table *stations, double *length_m, float *largest_m)
 {
     awt_groom *groom = build->groom;
     const uint32_t sections = groom->info.sections;
-    const uint32_t first = groom->gc_strand_first[w], end = groom->gc_strand_first[w + 1];
     const vec3 *centres = groom->rest_position + (size_t)(groom_finest_first(groom) + w) * sections;
-    wisp_stations stations = {.count = evaluate_station_count(sections, GROOM_TABLE_PER_SEGMENT)};
-    evaluate_stations(centres, groom->rest_frame + (size_t)w * sections, sections, GROOM_TABLE_PER_SEGMENT,
-                      stations.station);
-    for (uint32_t k = first; k < end; k++) {
-        stations.mean_length_m += build->length_m[k] / (double)(end - first);
+    evaluate_stations(stations, centres, groom->rest_frame + (size_t)w * sections);
+    for (uint32_t k = groom->gc_strand_first[w]; k < groom->gc_strand_first[w + 1]; k++) {
+        float offset = bind_strand(build, k, stations);
+        *largest_m = offset > *largest_m ? offset : *largest_m;
     }
-    float largest = 0.0f;
-    for (uint32_t k = first; k < end; k++) {
-        float offset = bind_strand(build, k, &stations);
-        largest = offset > largest ? offset : largest;
-    }
-    double reach = wisp_length(centres, sections) * DRAFT_STRAIN + (double)largest;
-    build->reach_m = reach > build->reach_m ? reach : build->reach_m;
+    double length = wisp_length(centres, sections);
+    *length_m = length > *length_m ? length : *length_m;
 }
 
 void bind_strands(groom_draft *build)
 {
     awt_groom *groom = build->groom;
     const uint32_t finest = groom->info.wisp_count[groom->info.levels - 1];
-    measure_strands(build);
+    evaluate_table stations;
+    arena memory = arena_over(build->strand_scratch, awt_groom_strand_scratch(groom) * sizeof(float));
+    evaluate_lay_out(&stations, &memory, groom->info.sections, groom->info.points_per_strand);
+    double length_m = 0.0;
+    float largest_m = 0.0f;
     for (uint32_t w = 0; w < finest; w++) {
         if (w % 64 == 0) {
             draft_report(build, 0.7 + 0.3 * w / finest);
         }
-        bind_wisp(build, w);
+        bind_wisp(build, w, &stations, &length_m, &largest_m);
     }
+    /* a merged wisp goes where its super-wisp does: any length may meet any offset */
+    build->reach_m = length_m * DRAFT_STRAIN + (double)largest_m;
+    /* hair without length turns about its root with all that its top-level wisp is wide */
+    float widest_m = 0.0f;
+    for (uint32_t g = 0; g < groom->info.wisp_count[0]; g++) {
+        float radius = groom->rest_radius[(size_t)g * groom->info.sections];
+        widest_m = radius > widest_m ? radius : widest_m;
+    }
+    double turning_m = 2.0 * ((double)widest_m + (double)largest_m);
+    build->reach_m = turning_m > build->reach_m ? turning_m : build->reach_m;
 }

@@ -45,7 +45,7 @@ static inline void draft_measure(const groom_draft *build, uint32_t k, polyline 
 void hierarchy_build(groom_draft *build);
 /* Fills rest_position, rest_radius and rest_frame. Reports 0.4 .. 0.7. */
 void fit_wisps(groom_draft *build);
-/* Fills strand_station, strand_offset, length_m and reach_m. Reports 0.7 .. 1. */
+/* Fills strand_offset, length_m and reach_m. Reports 0.7 .. 1. */
 void bind_strands(groom_draft *build);
 /* Fills rebuilt. Reports 1. */
 void measure_rebuilt(groom_draft *build);

@@ -34,8 +34,7 @@ static void groom_lay_out(awt_groom *groom, arena *memory)
     groom->rest_room = ARENA_PUSH(memory, float, nodes);
     groom->rest_frame = ARENA_PUSH(memory, quat, groom->info.finest_nodes);
     groom->gc_strand_first = ARENA_PUSH(memory, uint32_t, (size_t)groom->info.wisp_count[groom->info.levels - 1] + 1);
-    groom->strand_station = ARENA_PUSH(memory, uint16_t, points);
-    groom->strand_offset = ARENA_PUSH(memory, vec3, points);
+    groom->strand_offset = ARENA_PUSH(memory, float, 3 * points);
 }
 
 bool groom_take_memory(awt_groom *groom)

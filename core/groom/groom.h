@@ -11,8 +11,6 @@
 #include "base/vec.h"
 #include "groom/plan.h"
 
-enum { GROOM_TABLE_PER_SEGMENT = 2 }; /* strand points are bound to this many stations per segment (evaluate.h) */
-
 struct awt_groom {
     awt_groom_info info;
     awt_rebuilt rebuilt;
@@ -38,8 +36,7 @@ struct awt_groom {
 
     /* strands, binding to the stations of their finest GC (evaluate.h) */
     uint32_t *gc_strand_first; /* [finest GCs + 1] */
-    uint16_t *strand_station;  /* [strands * points]; station along the GC */
-    vec3 *strand_offset;       /* [strands * points]; in the station's frame */
+    float *strand_offset;      /* [strands][3][points]; x y z in the frames of the stations */
 };
 
 static inline uint32_t groom_finest_first(const awt_groom *groom)

@@ -1,91 +1,190 @@
 /* evaluate.c: see evaluate.h.
  *
- * evaluate_points is where the time goes: 160,000 points a frame. Its columns of four floats are loops of fixed length
- * that compilers turn into vector operations, in the order that a scalar mat3_apply has: the bits are the same. */
+ * evaluate_strands is where the time goes, 160,000 points a frame: LANES stations side by side are loaded once for a
+ * few strands, and every point costs nine products. */
 #include "sim/evaluate.h"
 
 #include "groom/groom.h"
 
-#include <string.h>
+typedef float evaluate_four __attribute__((vector_size(16)));
 
-/* Catmull-Rom through b and c at t in [0, 1]. */
-static vec3 curve_at(vec3 a, vec3 b, vec3 c, vec3 d, float t)
+static evaluate_four four_load(const float *from)
 {
-    float t2 = t * t, t3 = t2 * t;
-    float wa = 0.5f * (-t3 + 2.0f * t2 - t), wb = 0.5f * (3.0f * t3 - 5.0f * t2 + 2.0f);
-    float wc = 0.5f * (-3.0f * t3 + 4.0f * t2 + t), wd = 0.5f * (t3 - t2);
-    return vec3_mad(vec3_mad(vec3_mad(vec3_scale(a, wa), b, wb), c, wc), d, wd);
+    evaluate_four a;
+    memcpy(&a, from, sizeof a);
+    return a;
 }
 
-static evaluate_station station_of(vec3 centre, quat frame)
+/* Catmull-Rom between sections `from` and `to`; beyond the ends the curve goes on straight. */
+static evaluate_tap tap_at(uint32_t sections, uint32_t points, uint32_t station)
 {
-    mat3 m = mat3_of_quat(frame);
-    return (evaluate_station){{m.x.x, m.x.y, m.x.z, 0},
-                              {m.y.x, m.y.y, m.y.z, 0},
-                              {m.z.x, m.z.y, m.z.z, 0},
-                              {centre.x, centre.y, centre.z, 0}};
-}
-
-void evaluate_stations(const vec3 *centres, const quat *frames, uint32_t sections, uint32_t per_segment,
-                       evaluate_station *out)
-{
-    for (uint32_t i = 0; i + 1 < sections; i++) {
-        vec3 b = centres[i], c = centres[i + 1];
-        /* beyond the ends the curve goes on straight */
-        vec3 a = i > 0 ? centres[i - 1] : vec3_sub(vec3_add(b, b), c);
-        vec3 d = i + 2 < sections ? centres[i + 2] : vec3_sub(vec3_add(c, c), b);
-        *out++ = station_of(b, frames[i]);
-        for (uint32_t k = 1; k < per_segment; k++) {
-            float t = (float)k / (float)per_segment;
-            *out++ = station_of(curve_at(a, b, c, d, t), quat_blend(frames[i], frames[i + 1], t));
+    const uint32_t segments = sections - 1, way = station * segments, last = points - 1;
+    uint32_t from = way / last < segments ? way / last : segments - 1;
+    float t = (float)(way - from * last) / (float)last, t2 = t * t, t3 = t2 * t;
+    float a = 0.5f * (-t3 + 2.0f * t2 - t), b = 0.5f * (3.0f * t3 - 5.0f * t2 + 2.0f);
+    float c = 0.5f * (-3.0f * t3 + 4.0f * t2 + t), d = 0.5f * (t3 - t2);
+    if (from == 0) { /* the section before: 2 b - c */
+        b += 2.0f * a, c -= a, a = 0.0f;
+    }
+    if (from + 2 > segments) { /* the section after: 2 c - b */
+        c += 2.0f * d, b -= d, d = 0.0f;
+    }
+    uint32_t first = from > 0 ? from - 1 : 0;
+    first = first + 4 <= sections ? first : sections > 4 ? sections - 4 : 0;
+    evaluate_tap tap = {.first = first, .from = from, .to = from + 1, .blend = t};
+    const float weight[4] = {a, b, c, d};
+    for (int k = 0; k < 4; k++) { /* section from - 1 + k */
+        if (weight[k] != 0.0f) {
+            tap.weight[from + (uint32_t)k - 1 - first] = weight[k];
         }
     }
-    *out = station_of(centres[sections - 1], frames[sections - 1]);
+    return tap;
 }
 
-/* One point: three floats and a fourth that means nothing. */
-static inline void point_of(const evaluate_station *s, vec3 offset, float point[4])
+void evaluate_lay_out(evaluate_table *table, arena *memory, uint32_t sections, uint32_t points)
 {
-    for (int axis = 0; axis < 4; axis++) {
-        point[axis] = s->centre[axis] + (s->x[axis] * offset.x + s->y[axis] * offset.y + s->z[axis] * offset.z);
+    table->points = points;
+    table->sections = sections;
+    table->stride = (points + LANES - 1) / LANES * LANES;
+    table->taps = ARENA_PUSH(memory, evaluate_tap, points);
+    table->centres = ARENA_PUSH(memory, float, 4 * (size_t)(sections > 4 ? sections : 4));
+    table->mixed = ARENA_PUSH(memory, float, 8 * (size_t)table->stride);
+    table->column = ARENA_PUSH(memory, float, (size_t)EVALUATE_COLUMNS * table->stride);
+    for (uint32_t i = 0; memory->base && table->taps && i < points; i++) {
+        table->taps[i] = tap_at(sections, points, i);
     }
 }
 
-void evaluate_points(const evaluate_station *restrict stations, const uint16_t *restrict station,
-                     const vec3 *restrict offsets, uint32_t count, float *restrict points)
+/* Point and quaternion of every station, not yet of length 1. */
+static void stations_mix(evaluate_table *table, const vec3 *centres, const quat *frames)
 {
-    float point[4];
-    uint32_t i = 0;
-    for (; i + 1 < count; i++, points += 3) { /* the next point goes over the fourth float */
-        point_of(&stations[station[i]], offsets[i], point);
-        memcpy(points, point, sizeof point);
+    for (uint32_t s = 0; s < table->sections; s++) {
+        memcpy(table->centres + 4 * (size_t)s, &centres[s], sizeof *centres);
     }
-    if (i < count) {
-        point_of(&stations[station[i]], offsets[i], point);
-        memcpy(points, point, 3 * sizeof *point);
+    for (uint32_t i = 0; i < table->points; i++) {
+        const evaluate_tap *tap = &table->taps[i];
+        const float *near = table->centres + 4 * (size_t)tap->first;
+        evaluate_four point = four_load(near) * tap->weight[0] + four_load(near + 4) * tap->weight[1] +
+                              four_load(near + 8) * tap->weight[2] + four_load(near + 12) * tap->weight[3];
+        const quat *p = &frames[tap->from], *q = &frames[tap->to];
+        float dot = p->x * q->x + p->y * q->y + p->z * q->z + p->w * q->w;
+        evaluate_four turn =
+            four_load(&p->x) * (1.0f - tap->blend) + four_load(&q->x) * (dot < 0.0f ? -tap->blend : tap->blend);
+        memcpy(table->mixed + 8 * (size_t)i, &point, sizeof point);
+        memcpy(table->mixed + 8 * (size_t)i + 4, &turn, sizeof turn);
     }
+}
+
+void evaluate_stations(evaluate_table *table, const vec3 *centres, const quat *frames)
+{
+    const uint32_t stride = table->stride;
+    stations_mix(table, centres, frames);
+    for (uint32_t i = 0; i < stride; i += LANES) {
+        const float *record[LANES];
+        lanes m[8];
+        for (uint32_t k = 0; k < LANES; k++) {
+            record[k] = table->mixed + 8 * (size_t)(i + k);
+        }
+        lanes_turn8(record, m);
+        lanes scale = lanes_of(1.0f) / lanes_sqrt(m[4] * m[4] + m[5] * m[5] + m[6] * m[6] + m[7] * m[7]);
+        lanes x = m[4] * scale, y = m[5] * scale, z = m[6] * scale, w = m[7] * scale;
+        lanes xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y,
+              wz = w * z;
+        const lanes column[EVALUATE_COLUMNS] = {1.0f - 2.0f * (yy + zz),
+                                                2.0f * (xy + wz),
+                                                2.0f * (xz - wy),
+                                                2.0f * (xy - wz),
+                                                1.0f - 2.0f * (xx + zz),
+                                                2.0f * (yz + wx),
+                                                2.0f * (xz + wy),
+                                                2.0f * (yz - wx),
+                                                1.0f - 2.0f * (xx + yy),
+                                                m[0],
+                                                m[1],
+                                                m[2]};
+        for (uint32_t c = 0; c < EVALUATE_COLUMNS; c++) {
+            lanes_store(table->column + c * stride + i, column[c]);
+        }
+    }
+}
+
+/* LANES points of one strand: their coordinates, side by side. */
+static inline lanes3 points_at(const lanes column[EVALUATE_COLUMNS], const float *offsets, uint32_t points)
+{
+    lanes x = lanes_load(offsets), y = lanes_load(offsets + points), z = lanes_load(offsets + 2 * (size_t)points);
+    return (lanes3){column[9] + (column[0] * x + column[3] * y + column[6] * z),
+                    column[10] + (column[1] * x + column[4] * y + column[7] * z),
+                    column[11] + (column[2] * x + column[5] * y + column[8] * z)};
+}
+
+static inline void columns_load(const evaluate_table *table, uint32_t station, lanes column[EVALUATE_COLUMNS])
+{
+    for (uint32_t c = 0; c < EVALUATE_COLUMNS; c++) {
+        column[c] = lanes_load(table->column + c * table->stride + station);
+    }
+}
+
+/* Strands of fewer points than there are lanes. */
+static void evaluate_short(const evaluate_table *table, const float *offsets, uint32_t strands, float *out)
+{
+    const uint32_t points = table->points;
+    lanes column[EVALUATE_COLUMNS];
+    columns_load(table, 0, column);
+    for (uint32_t s = 0; s < strands; s++, offsets += 3 * (size_t)points, out += 3 * (size_t)points) {
+        float offset[3 * LANES] = {0}, point[3 * LANES];
+        for (uint32_t axis = 0; axis < 3; axis++) {
+            memcpy(offset + axis * LANES, offsets + axis * points, points * sizeof *offset);
+        }
+        lanes3_store(point, points_at(column, offset, LANES));
+        memcpy(out, point, 3 * points * sizeof *point);
+    }
+}
+
+void evaluate_strands(const evaluate_table *table, const float *restrict offsets, uint32_t strands, float *restrict out)
+{
+    const uint32_t points = table->points;
+    if (points < LANES) {
+        evaluate_short(table, offsets, strands, out);
+        return;
+    }
+    for (uint32_t i = 0; i < points; i += LANES) {
+        const uint32_t at = i + LANES <= points ? i : points - LANES; /* the last ones: some of them once more */
+        lanes column[EVALUATE_COLUMNS];
+        columns_load(table, at, column);
+        for (uint32_t s = 0; s < strands; s++) {
+            const size_t strand = 3 * (size_t)points * s;
+            lanes3_store(out + strand + 3 * (size_t)at, points_at(column, offsets + strand + at, points));
+        }
+    }
+}
+
+static void scratch_lay_out(const awt_groom *groom, evaluate_table *table, arena *memory)
+{
+    evaluate_lay_out(table, memory, groom->info.sections, groom->info.points_per_strand);
 }
 
 size_t awt_groom_strand_scratch(const awt_groom *groom)
 {
-    uint32_t stations = evaluate_station_count(groom->info.sections, GROOM_TABLE_PER_SEGMENT);
-    return stations * sizeof(evaluate_station) / sizeof(float);
+    evaluate_table table;
+    arena counting = arena_counting();
+    scratch_lay_out(groom, &table, &counting);
+    return (counting.used + ARENA_ALIGNMENT) / sizeof(float) + 1;
 }
 
 void awt_groom_strands(const awt_groom *groom, const float *centres, const float *frames, float *scratch, float *points)
 {
     const uint32_t sections = groom->info.sections;
-    const uint32_t per_strand = groom->info.points_per_strand;
+    const size_t strand = 3 * (size_t)groom->info.points_per_strand;
     const uint32_t finest = groom->info.wisp_count[groom->info.levels - 1];
     const vec3 *centre = (const vec3 *)(const void *)centres;
     const quat *frame = (const quat *)(const void *)frames;
-    evaluate_station *stations = (evaluate_station *)(void *)scratch;
+    arena memory = arena_over(scratch, awt_groom_strand_scratch(groom) * sizeof(float));
+    evaluate_table table;
+    scratch_lay_out(groom, &table, &memory);
     for (uint32_t g = 0; g < finest; g++) {
-        size_t first = (size_t)groom->gc_strand_first[g] * per_strand;
-        uint32_t count = (groom->gc_strand_first[g + 1] - groom->gc_strand_first[g]) * per_strand;
-        evaluate_stations(centre + (size_t)g * sections, frame + (size_t)g * sections, sections,
-                          GROOM_TABLE_PER_SEGMENT, stations);
-        evaluate_points(stations, groom->strand_station + first, groom->strand_offset + first, count,
-                        points + 3 * first);
+        const uint32_t first = groom->gc_strand_first[g];
+        evaluate_stations(&table, centre + (size_t)g * sections, frame + (size_t)g * sections);
+        evaluate_strands(&table, groom->strand_offset + strand * first, groom->gc_strand_first[g + 1] - first,
+                         points + strand * first);
     }
 }

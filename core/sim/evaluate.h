@@ -1,44 +1,59 @@
 /* evaluate.h: strands from the finest nodes (AWT §2.2: each strand is attached to one of the finest GCs).
  *
- * Along each finest GC stand stations, GROOM_TABLE_PER_SEGMENT to a segment: a point of the smooth curve through the
- * section centres and a frame blended between the sections' frames. A strand point is its station's point plus a
- * constant offset in its station's frame, so at rest the strands are the groom's own, exactly, and they move rigidly
- * with the wisp around them (§3.3). The client library evaluates with this same code. */
+ * Along each finest GC stand as many stations as a strand has points, evenly from root to tip: a point of the smooth
+ * curve through the section centres and a frame blended between the sections' frames. Point i of a strand is station
+ * i's point plus a constant offset in its frame, so at rest the strands are the groom's own, exactly, and they move
+ * rigidly with the wisp around them (§3.3). The client library evaluates with this same code. */
 #ifndef SIM_EVALUATE_H
 #define SIM_EVALUATE_H
 
-#include "base/vec.h"
+#include "base/arena.h"
+#include "base/lanes.h"
+
 #include <stdint.h>
 
-/* Four columns of four floats, so that a point is four operations on whole columns; the fourth floats are 0. */
-typedef struct evaluate_station {
-    float x[4], y[4], z[4]; /* station's frame to head frame, y along the wisp */
-    float centre[4];
-} evaluate_station;
+/* Where a station stands: the same for all GCs of a groom. */
+typedef struct evaluate_tap {
+    float weight[4];   /* of four sections from `first` on: the curve */
+    uint32_t first;    /* 0 .. sections - 4, or 0 */
+    uint32_t from, to; /* sections between which the frame is blended */
+    float blend;       /* share of `to` */
+} evaluate_tap;
 
-static inline vec3 evaluate_centre(const evaluate_station *s)
+enum { EVALUATE_COLUMNS = 12 }; /* of a station: the frame's x, y and z axis in the head frame, y along; the point */
+
+/* Working memory of one evaluation, and in it the stations of one GC, side by side: column c of station i is
+ * column[c * stride + i]. */
+typedef struct evaluate_table {
+    uint32_t points, sections, stride;
+    evaluate_tap *taps; /* [points] */
+    float *centres;     /* [sections, at least 4][4] */
+    float *mixed;       /* [points][8]: the curve's point and the blended quaternion */
+    float *column;      /* [EVALUATE_COLUMNS * stride] */
+} evaluate_table;
+
+/* Arrays for strands of `points` points (2 .. AWT_MAX_POINTS_PER_STRAND) on GCs of `sections` sections, from a real
+ * arena or a counting one; a real one's taps are set. */
+void evaluate_lay_out(evaluate_table *table, arena *memory, uint32_t sections, uint32_t points);
+
+/* Fills the stations of one GC from its section centres and frames, [sections] each. */
+void evaluate_stations(evaluate_table *table, const vec3 *centres, const quat *frames);
+
+/* out [strands][points][3] from offsets [strands][3][points] in the frames of the table's stations. */
+void evaluate_strands(const evaluate_table *table, const float *restrict offsets, uint32_t strands,
+                      float *restrict out);
+
+static inline vec3 evaluate_centre(const evaluate_table *table, uint32_t station)
 {
-    return (vec3){s->centre[0], s->centre[1], s->centre[2]};
+    const float *c = table->column + station;
+    return vec3_make(c[9 * table->stride], c[10 * table->stride], c[11 * table->stride]);
 }
 
-static inline mat3 evaluate_frame(const evaluate_station *s)
+static inline mat3 evaluate_frame(const evaluate_table *table, uint32_t station)
 {
-    return (mat3){{s->x[0], s->x[1], s->x[2]}, {s->y[0], s->y[1], s->y[2]}, {s->z[0], s->z[1], s->z[2]}};
+    const float *c = table->column + station;
+    const uint32_t s = table->stride;
+    return (mat3){{c[0], c[s], c[2 * s]}, {c[3 * s], c[4 * s], c[5 * s]}, {c[6 * s], c[7 * s], c[8 * s]}};
 }
-
-/* Stations of a GC of `sections` sections. */
-static inline uint32_t evaluate_station_count(uint32_t sections, uint32_t per_segment)
-{
-    return (sections - 1) * per_segment + 1;
-}
-
-/* Fills evaluate_station_count stations of one GC from its section centres and frames, [sections] each;
- * 2 <= sections <= AWT_MAX_SECTIONS. */
-void evaluate_stations(const vec3 *centres, const quat *frames, uint32_t sections, uint32_t per_segment,
-                       evaluate_station *out);
-
-/* points[i] = the station's point + its frame times offsets[i]. */
-void evaluate_points(const evaluate_station *restrict stations, const uint16_t *restrict station,
-                     const vec3 *restrict offsets, uint32_t count, float *restrict points);
 
 #endif

@@ -24,7 +24,7 @@
 #define FASTEST_M_S 1e6
 #define FIERCEST_M_S2 1e12
 
-enum { GROOM_SPANS = 7, FOREST_SPANS = 11 };
+enum { GROOM_SPANS = 6, FOREST_SPANS = 11 };
 
 /* ---- arrays: section, kind, array, count, least, most ------------------------------------------------------------ */
 
@@ -32,14 +32,12 @@ static void groom_spans(const awt_groom *g, span out[GROOM_SPANS])
 {
     const size_t gcs = g->gc_count, nodes = gcs * g->info.sections;
     const size_t points = (size_t)g->info.strand_count * g->info.points_per_strand;
-    const double last_station = (double)(g->info.sections - 1) * GROOM_TABLE_PER_SEGMENT;
     const span spans[GROOM_SPANS] = {
         {"GSUB", SPAN_U32, g->gc_sub_count, gcs, 0, AWT_MAX_NODES},
         {"GSTR", SPAN_U32, g->gc_strand_count, gcs, 1, AWT_MAX_STRANDS},
         {"GPOS", SPAN_F32, g->rest_position, 3 * nodes, -SNAPSHOT_FARTHEST_M, SNAPSHOT_FARTHEST_M},
         {"GRAD", SPAN_F32, g->rest_radius, nodes, 0, SNAPSHOT_FARTHEST_M},
         {"GFRM", SPAN_UNIT, g->rest_frame, 4 * (size_t)g->info.finest_nodes, -2, 2},
-        {"GSTA", SPAN_U16, g->strand_station, points, 0, last_station},
         {"GOFF", SPAN_F32, g->strand_offset, 3 * points, -SNAPSHOT_FARTHEST_M, SNAPSHOT_FARTHEST_M},
     };
     memcpy(out, spans, sizeof spans);

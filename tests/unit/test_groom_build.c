@@ -120,18 +120,19 @@ TEST(groom_keeps_the_file_order_inside_a_wisp)
     awt_strands_fini(&strands);
 }
 
+/* Strands of one wisp differ in length; their points are as far ahead of their stations as their own length asks for.
+ */
 TEST(groom_points_lie_beside_their_stations)
 {
     const awt_groom *groom = fixture_groom("long", AWT_DEFAULT_STRANDS);
-    const size_t points = (size_t)groom->info.strand_count * groom->info.points_per_strand;
-    const double station_m =
-        groom->info.median_strand_m / (double)((groom->info.sections - 1) * GROOM_TABLE_PER_SEGMENT);
+    const uint32_t points = groom->info.points_per_strand;
     double ahead = 0.0;
-    for (size_t i = 0; i < points; i++) {
-        ahead += (double)fabsf(groom->strand_offset[i].y) / (double)points;
-        CHECK(i % groom->info.points_per_strand != 0 || groom->strand_station[i] == 0);
+    for (size_t s = 0; s < groom->info.strand_count; s++) {
+        for (uint32_t i = 0; i < points; i++) {
+            ahead += (double)fabsf(groom->strand_offset[(3 * s + 1) * points + i]) / points / groom->info.strand_count;
+        }
     }
-    CHECK(ahead < 0.35 * station_m); /* a quarter is what rounding to stations costs */
+    CHECK(ahead < 0.05 * groom->info.median_strand_m);
 }
 
 TEST(groom_section_frames_turn_with_the_curve_and_no_more)
@@ -227,7 +228,7 @@ TEST(groom_is_the_same_whenever_it_is_built)
 TEST(groom_is_the_same_on_every_compiler)
 {
     awt_groom *groom = groom_fixture_build_patch(700, 3, 5, 60);
-    CHECK_U64(groom_fixture_hash(groom), UINT64_C(0x261db74faa867711));
+    CHECK_U64(groom_fixture_hash(groom), UINT64_C(0x9eaf438f432f529d));
     awt_groom_destroy(groom);
 }
 

@@ -208,8 +208,7 @@ TEST(the_groom_of_a_snapshot_is_the_groom)
         CHECK_BYTES(b->rest_position, a->rest_position, nodes * sizeof(vec3));
         CHECK_BYTES(b->rest_radius, a->rest_radius, nodes * sizeof(float));
         CHECK_BYTES(b->rest_frame, a->rest_frame, a->info.finest_nodes * sizeof(quat));
-        CHECK_BYTES(b->strand_station, a->strand_station, points * 2);
-        CHECK_BYTES(b->strand_offset, a->strand_offset, points * sizeof(vec3));
+        CHECK_BYTES(b->strand_offset, a->strand_offset, points * 3 * sizeof(float));
         awt_params expected = awt_style_at(s)->params;
         CHECK_BYTES(&params, &expected, sizeof params);
         awt_groom_destroy(b);
@@ -431,7 +430,6 @@ TEST(a_snapshot_that_lies_is_refused_by_the_section_that_lies)
         {"GPOS", 0, bits_of(INFINITY), "GPOS"},               /* */
         {"GRAD", 4, bits_of(-1.0f), "GRAD"},                  /* */
         {"GFRM", 0, bits_of(1.5f), "GFRM"},                   /* no unit quaternion */
-        {"GSTA", 0, 0xffffu, "GSTA"},                         /* a station behind the tip */
         {"GOFF", 4, bits_of(NAN), "GOFF"},                    /* */
         {"SPLT", 0, 0, "SPLT"},                               /* the root cross-section split */
         {"SPLT", 0, g->info.sections + 1, "SPLT"},            /* */
