@@ -12,6 +12,7 @@
 #include <string.h>
 
 enum { INDEX_ALPHABET = 256 };
+#define BOX_REACH_M 1e6f /* no hair is farther away; what is nearer cannot add up to a number that is not finite */
 
 struct draco_reader {
     uint16_t *symbols; /* [3][most of vertices and triangles] */
@@ -107,8 +108,11 @@ static bool take_box(cursor *c, draco_box *box)
     }
     box->range = take_f32(c);
     box->bits = *c->at++;
-    return least == 0 && box->bits >= 1 && box->bits <= QUANTISE_MAX_BITS && greatest == (1u << box->bits) - 1 &&
-           isfinite(box->range) && isfinite(box->origin[0]) && isfinite(box->origin[1]) && isfinite(box->origin[2]);
+    bool sound = box->range >= 0 && box->range <= BOX_REACH_M;
+    for (int k = 0; k < 3; k++) {
+        sound = sound && fabsf(box->origin[k]) <= BOX_REACH_M;
+    }
+    return sound && least == 0 && box->bits >= 1 && box->bits <= QUANTISE_MAX_BITS && greatest == (1u << box->bits) - 1;
 }
 
 /* What follows makes the mesh as large as decoders ask for, and no larger. */

@@ -145,7 +145,9 @@ void rans_encode(rans_lane lanes[RANS_LANES])
         band.left[k] = lanes[k].count;
         least = lanes[k].count < least ? lanes[k].count : least;
     }
-    put_four(&band, least);
+    if (least > 0) {
+        put_four(&band, least);
+    }
     for (int a = longest(&band, -1); band.left[a] > 0; a = longest(&band, -1)) {
         int b = longest(&band, a);
         if (band.left[b] > 0) {

@@ -181,6 +181,29 @@ TEST(geom_own_reader_refuses_other_triangles_and_other_padding)
     free_row(&r);
 }
 
+TEST(geom_own_reader_refuses_boxes_that_are_none)
+{
+    const float wrong[] = {NAN, INFINITY, -INFINITY, 3e38f, -3e38f};
+    rng random = rng_seed(24);
+    row r = make_row(120, 12, SYMBOLS_RAW);
+    walk(&r, 0.01, &random);
+    write_row(&r);
+    for (size_t field = 0; field < 4; field++) { /* origin and range, before the bits at the end */
+        unsigned char *at = r.bytes + r.size - 17 + 4 * field;
+        float kept;
+        memcpy(&kept, at, sizeof kept);
+        for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+            memcpy(at, &wrong[i], sizeof kept);
+            CHECK(!read_row(&r, r.bytes, r.size, r.own));
+        }
+        memcpy(at, &kept, sizeof kept);
+        CHECK(read_row(&r, r.bytes, r.size, r.own));
+    }
+    r.bytes[r.size - 1]++; /* bits */
+    CHECK(!read_row(&r, r.bytes, r.size, r.own));
+    free_row(&r);
+}
+
 /* Flips anywhere. What is taken in spite of them (another position, another box) must be finite. */
 TEST(geom_own_reader_survives_random_damage)
 {
