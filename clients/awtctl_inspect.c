@@ -114,7 +114,7 @@ awtctl_exit awtctl_inspect(int argc, char *const *argv)
     if (!bytes) {
         return awtctl_failed("%s", text);
     }
-    awt_status status = geom_read_ribbons(bytes, report.bytes, &report.strands, &error);
+    awt_status status = geom_read_frame(bytes, report.bytes, &report.strands, &error);
     free(bytes);
     if (status != AWT_OK) {
         return awtctl_failed("%s: %s", path, error.text);

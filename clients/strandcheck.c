@@ -31,10 +31,10 @@ static const float *strand_root(const geom_strands *strands, uint32_t strand)
 
 static awt_status check_finite(const geom_strands *strands, awt_error *error)
 {
-    size_t count = (size_t)strands->strand_count * strands->points_per_strand * 6;
+    size_t count = (size_t)strands->strand_count * strands->points_per_strand * 3;
     for (size_t i = 0; i < count; i++) {
-        if (!isfinite(strands->vertices[i])) {
-            return error_set(error, AWT_BAD_VALUE, "vertex %zu of the frame is not finite", i / 3);
+        if (!isfinite(strands->positions[i])) {
+            return error_set(error, AWT_BAD_VALUE, "point %zu of the frame is not finite", i / 3);
         }
     }
     return AWT_OK;
@@ -73,7 +73,7 @@ static void check_strand(strandcheck *check, const geom_strands *strands, uint32
 awt_status strandcheck_add(strandcheck *check, const void *glb, size_t size, awt_error *error)
 {
     geom_strands strands;
-    awt_status status = geom_read_ribbons(glb, size, &strands, error);
+    awt_status status = geom_read_frame(glb, size, &strands, error);
     if (status != AWT_OK) {
         return status;
     }

@@ -85,7 +85,7 @@ static awt_status make_buffers(forest_work *w, awt_error *error)
     if (!w->centres || !w->frames || !w->strand_scratch || !w->points) {
         return error_set(error, AWT_NO_MEMORY, NULL);
     }
-    awt_status status = geom_layout_create(w->groom, &w->layout, error);
+    awt_status status = geom_layout_create(w->groom, NULL, &w->layout, error);
     return status == AWT_OK ? geom_scratch_create(w->layout, &w->scratch, error) : status;
 }
 
@@ -169,10 +169,9 @@ static awt_status publish(forest_work *w, const awt_step_stats *step, int64_t st
     }
     awt_forest_guides(w->forest, w->centres, w->frames);
     awt_groom_strands(w->groom, w->centres, w->frames, w->strand_scratch, w->points);
-    awt_pose head = awt_forest_head(w->forest);
+    const geom_frame_def def = {.points = w->points, .head = awt_forest_head(w->forest), .time_us = step->time_us};
     geom_frame_stats drawn = {0};
-    awt_status status =
-        geom_encode_ribbons(w->layout, w->scratch, w->points, &head, step->time_us, &out->glb, &drawn, error);
+    awt_status status = geom_encode(w->layout, w->scratch, &def, &out->glb, &drawn, error);
     if (status != AWT_OK) {
         published_release(out);
         return status;

@@ -12,7 +12,7 @@ void geom_buffer_fini(geom_buffer *buffer)
     *buffer = (geom_buffer){0};
 }
 
-awt_status geom_buffer_append(geom_buffer *buffer, const void *bytes, size_t size, awt_error *error)
+awt_status geom_buffer_extend(geom_buffer *buffer, size_t size, unsigned char **at, awt_error *error)
 {
     if (size > GEOM_MAX_GLB - buffer->size) {
         return error_set(
@@ -30,9 +30,20 @@ awt_status geom_buffer_append(geom_buffer *buffer, const void *bytes, size_t siz
         buffer->bytes = larger;
         buffer->capacity = capacity;
     }
-    if (size > 0) {
-        memcpy(buffer->bytes + buffer->size, bytes, size);
-        buffer->size += size;
-    }
+    *at = buffer->bytes + buffer->size;
+    buffer->size += size;
     return AWT_OK;
+}
+
+awt_status geom_buffer_append(geom_buffer *buffer, const void *bytes, size_t size, awt_error *error)
+{
+    unsigned char *at = NULL;
+    if (size == 0) {
+        return AWT_OK;
+    }
+    awt_status status = geom_buffer_extend(buffer, size, &at, error);
+    if (status == AWT_OK) {
+        memcpy(at, bytes, size);
+    }
+    return status;
 }

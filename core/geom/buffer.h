@@ -12,6 +12,9 @@ extern "C" {
  * AWT_NO_MEMORY; AWT_LIMIT beyond GEOM_MAX_GLB. The buffer is unchanged then. */
 awt_status geom_buffer_append(geom_buffer *buffer, const void *bytes, size_t size, awt_error *error);
 
+/* Grows by `size` bytes, which hold nothing yet: *at points to them until the buffer grows again. Errors as above. */
+awt_status geom_buffer_extend(geom_buffer *buffer, size_t size, unsigned char **at, awt_error *error);
+
 #ifdef __cplusplus
 }
 #endif

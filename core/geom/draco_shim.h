@@ -5,23 +5,12 @@
 #ifndef GEOM_DRACO_SHIM_H
 #define GEOM_DRACO_SHIM_H
 
+#include "geom/box.h"
 #include "geom/encode.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* The cube that positions are quantised in; origin and range are multiples of 1/64. */
-typedef struct draco_box {
-    float origin[3], range;
-    int bits;
-} draco_box;
-
-/* Metres from one quantised position to the next. */
-static inline float draco_box_step(const draco_box *box)
-{
-    return box->range / (float)((1 << box->bits) - 1);
-}
 
 /* Coordinate `value` along axis `axis` as a decoder gives it back: quantised and dequantised with Draco's arithmetic.
  */

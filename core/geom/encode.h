@@ -1,8 +1,8 @@
-/* encode.h: strand points to frames: ribbons in patches, Draco, GLB. (read.h goes the other way.)
+/* encode.h: strand points to frames: patches, Draco, GLB. (read.h goes the other way.)
  *
- * The way of the data: strand points (head frame) -> ribbon vertices of one patch -> quantised, sequential Draco
- * -> all patches and the head's pose in one GLB with KHR_draco_mesh_compression. Encoding is a function of
- * the points and the caller's scratch, without hidden state. Sources: STREAM.md; glTF 2.0; the extension's text. */
+ * The way of the data: strand points (head frame) -> vertices of one patch -> quantised, sequential Draco -> all
+ * patches and the head's pose in one GLB with KHR_draco_mesh_compression. Encoding is a function of the points and the
+ * caller's scratch, without hidden state. Sources: STREAM.md; glTF 2.0; the extension's text. */
 #ifndef GEOM_ENCODE_H
 #define GEOM_ENCODE_H
 
@@ -15,7 +15,11 @@ extern "C" {
 
 enum {
     GEOM_MAX_PATCH_VERTICES = 65535, /* 16-bit indices; 65535 itself is the primitive restart value */
-    GEOM_RIBBON_BITS = 14            /* quantisation of ribbon positions */
+    GEOM_PATCH_POINTS = 16384,       /* strand points of one patch at most, of every kind */
+    GEOM_RIBBON_BITS = 14,           /* quantisation: a ribbon is a few steps wide (STREAM.md, traps) */
+    GEOM_STRANDS_BITS = 12,
+    GEOM_LEAST_BITS = 8, /* what a layout may ask for */
+    GEOM_GREATEST_BITS = 15
 };
 
 /* GLB bytes in a buffer that grows and is reused. Zeroed: empty. */
@@ -26,33 +30,62 @@ typedef struct geom_buffer {
 
 void geom_buffer_fini(geom_buffer *buffer);
 
-/* What of a groom decides the shape of its frames: which strands make which patch, ribbon widths, indices.
- * Immutable once made; any number of threads may encode from one. */
+/* What of a groom decides the shape of its frames of one kind: which strands make which patch, widths, triangles, all
+ * that is the same in every frame. Immutable once made; any number of threads may encode from one. */
 typedef struct geom_layout geom_layout;
 
-/* Patches are whole wisp trees, in order, under GEOM_MAX_PATCH_VERTICES. A tree that alone is too large is cut
- * between strands. AWT_NO_MEMORY, AWT_LIMIT. The groom must outlive the layout. */
-awt_status geom_layout_create(const awt_groom *groom, geom_layout **out, awt_error *error);
+typedef struct geom_layout_def {
+    geom_kind kind;
+    int bits;   /* quantisation of positions, GEOM_LEAST_BITS .. GEOM_GREATEST_BITS; 0: the kind's own */
+    bool stock; /* libdraco's encoder, the reference, instead of our own: the same positions, much slower */
+} geom_layout_def;
+
+/* Patches are whole wisp trees, in order, under GEOM_PATCH_POINTS. A tree that alone is too large is cut between
+ * strands. `def` NULL: ribbons by our own encoder. AWT_NO_MEMORY, AWT_LIMIT, AWT_BAD_VALUE. */
+awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def, geom_layout **out, awt_error *error);
 void geom_layout_destroy(geom_layout *layout);
 uint32_t geom_layout_patches(const geom_layout *layout);
+
+/* The strands of patch number `index`: whoever knows which strands moved says so by patch. */
+typedef struct geom_patch {
+    uint32_t first_strand, strands;
+} geom_patch;
+geom_patch geom_layout_patch(const geom_layout *layout, uint32_t index);
 
 /* One encoder's working memory; one thread at a time. */
 typedef struct geom_scratch geom_scratch;
 awt_status geom_scratch_create(const geom_layout *layout, geom_scratch **out, awt_error *error);
 void geom_scratch_destroy(geom_scratch *scratch);
+/* Bytes that it holds. */
+size_t geom_scratch_bytes(const geom_scratch *scratch);
+
+/* What a frame is made of. */
+typedef struct geom_frame_def {
+    const float *points; /* strand points [strands][points_per_strand][3], head frame */
+    awt_pose head;       /* becomes the glTF node's translation and rotation */
+    int64_t time_us;     /* goes into asset.extras */
+
+    /* Patches that need not be encoded again, because their points are to the bit those that `previous` was made of: a
+     * frame of the same layout, by our own encoder. The frame comes out as if all had been encoded. NULL: none. */
+    const bool *unchanged; /* [geom_layout_patches] */
+    const geom_buffer *previous;
+
+    bool measure; /* work out entropy_bits, which takes time */
+} geom_frame_def;
 
 typedef struct geom_frame_stats {
     uint32_t vertices, triangles;
-    uint32_t clamped_points; /* strand points outside the quantisation box, set onto it */
+    uint32_t clamped_points;  /* strand points outside the quantisation box, set onto it; of the patches encoded */
+    uint32_t encoded_patches; /* the others were kept */
+    double entropy_bits;      /* of the encoded positions: the least for a coder of single differences */
 } geom_frame_stats;
 
-/* Writes a `ribbon` frame: strand points [strands][points_per_strand][3], head frame; `head` becomes the glTF
- * node's translation and rotation; `time_us` goes into asset.extras. The scene's node is named "hair" and carries
- * extras {"strands", "points_per_strand"}; every patch is a primitive with extras {"first_strand", "strands"}.
- * `out` is replaced. AWT_BAD_VALUE (a point is not finite), AWT_NO_MEMORY, AWT_LIMIT. */
-awt_status geom_encode_ribbons(const geom_layout *layout, geom_scratch *scratch, const float *points,
-                               const awt_pose *head, int64_t time_us, geom_buffer *out, geom_frame_stats *stats,
-                               awt_error *error);
+/* Writes a frame. The scene's node is named "hair" and carries extras {"kind", "strands", "points_per_strand",
+ * "widths"} (widths: of a strand from root to tip, metres); every patch is a primitive with extras {"first_strand",
+ * "strands"}. `out` is replaced. AWT_BAD_VALUE (a point or the pose is not finite; `previous` is no frame of this
+ * layout), AWT_NO_MEMORY, AWT_LIMIT. */
+awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const geom_frame_def *def, geom_buffer *out,
+                       geom_frame_stats *stats, awt_error *error);
 
 #ifdef __cplusplus
 }

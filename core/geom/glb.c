@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "geom/json.h"
-#include "geom/ribbon.h"
+#include "geom/topology.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,6 +14,7 @@ enum { GLB_HEADER = 12, GLB_CHUNK_HEADER = 8, GLB_TRIANGLES = 4, GLB_U16 = 5123,
 #define GLB_MAGIC UINT32_C(0x46546C67)
 #define GLB_JSON UINT32_C(0x4E4F534A)
 #define GLB_BINARY UINT32_C(0x004E4942)
+#define GLB_MAX_WIDTH 1e6 /* metres; that it fits a float */
 /* Greatest time that a JSON number holds to the microsecond. */
 #define GLB_MAX_TIME_US 9007199254740992.0
 
@@ -141,15 +142,36 @@ static bool read_time(const glb_reader *r, int64_t *time_us)
     return (double)*time_us == time;
 }
 
-/* Strands first, for the counts of everything else follow from them. */
-static bool read_counts(const glb_reader *r, uint32_t node, glb_frame *out)
+static bool read_kind(const glb_reader *r, uint32_t extras, glb_frame *out)
 {
-    uint32_t extras = json_member(&r->json, node, "extras");
-    return whole_member(r, extras, "strands", &out->strands) &&
+    uint32_t kind = json_member(&r->json, extras, "kind");
+    out->kind = json_is_text(&r->json, kind, "strands") ? GEOM_STRANDS : GEOM_RIBBON;
+    return out->kind == GEOM_STRANDS || json_is_text(&r->json, kind, "ribbon");
+}
+
+/* Strands first, for the counts of everything else follow from them. */
+static bool read_counts(const glb_reader *r, uint32_t extras, glb_frame *out)
+{
+    return read_kind(r, extras, out) && whole_member(r, extras, "strands", &out->strands) &&
            whole_member(r, extras, "points_per_strand", &out->points_per_strand) && out->strands >= 1 &&
            out->strands <= AWT_MAX_STRANDS && out->points_per_strand >= 2 &&
            out->points_per_strand <= AWT_MAX_POINTS_PER_STRAND &&
            (uint64_t)out->strands * out->points_per_strand <= AWT_MAX_POINTS;
+}
+
+/* False: they are missing, or no widths. */
+static bool read_widths(const glb_reader *r, uint32_t extras, glb_frame *out)
+{
+    double widths[AWT_MAX_POINTS_PER_STRAND];
+    if (!json_reals(&r->json, json_member(&r->json, extras, "widths"), out->points_per_strand, widths)) {
+        return false;
+    }
+    bool sound = true;
+    for (uint32_t i = 0; i < out->points_per_strand; i++) {
+        sound = sound && widths[i] >= 0 && widths[i] < GLB_MAX_WIDTH;
+        out->widths[i] = sound ? (float)widths[i] : 0;
+    }
+    return sound;
 }
 
 static bool read_data_place(const glb_reader *r, uint32_t draco, glb_patch *patch)
@@ -178,15 +200,16 @@ static bool read_patch(const glb_reader *r, uint32_t primitive, const glb_frame 
                        glb_patch *patch)
 {
     const json_document *json = &r->json;
+    const uint32_t a_point = topology_vertices_a_point(frame->kind);
     uint32_t extras = json_member(json, primitive, "extras");
     if (!whole_member_is(r, extras, "first_strand", first) || !whole_member(r, extras, "strands", &patch->strands) ||
         patch->strands < 1 || patch->strands > frame->strands - first ||
-        patch->strands > GEOM_MAX_PATCH_VERTICES / (2 * frame->points_per_strand)) {
+        patch->strands > GEOM_MAX_PATCH_VERTICES / (a_point * frame->points_per_strand)) {
         return false;
     }
     patch->first_strand = first;
-    patch->vertices = patch->strands * frame->points_per_strand * 2;
-    patch->triangles = ribbon_index_count(patch->strands, frame->points_per_strand) / 3;
+    patch->vertices = patch->strands * frame->points_per_strand * a_point;
+    patch->triangles = topology_triangles(frame->kind, patch->strands, frame->points_per_strand);
     uint32_t draco = json_member(json, json_member(json, primitive, "extensions"), "KHR_draco_mesh_compression");
     uint32_t attributes = json_member(json, primitive, "attributes");
     return whole_member_is(r, primitive, "mode", GLB_TRIANGLES) && read_data_place(r, draco, patch) &&
@@ -224,9 +247,17 @@ static awt_status read_frame(glb_reader *r, glb_frame *out, awt_error *error)
                          "this GLB is not a frame of awtd: it must have one node named \"hair\"");
     }
     r->binary_size = buffer_size;
-    if (!read_pose(r, node + 1, &out->head) || !read_time(r, &out->time_us) || !read_counts(r, node + 1, out)) {
+    uint32_t extras = json_member(json, node + 1, "extras");
+    if (!read_pose(r, node + 1, &out->head) || !read_time(r, &out->time_us) || !read_counts(r, extras, out)) {
         return error_set(error, AWT_BAD_VALUE,
-                         "the frame's head pose, time or strand counts are missing or impossible");
+                         "the frame's head pose, time, kind or strand counts are missing or impossible");
+    }
+    out->widths = calloc(out->points_per_strand, sizeof *out->widths);
+    if (!out->widths) {
+        return error_set(error, AWT_NO_MEMORY, NULL);
+    }
+    if (!read_widths(r, extras, out)) {
+        return error_set(error, AWT_BAD_VALUE, "the frame's widths are missing or impossible");
     }
     uint32_t primitives = json_member(json, mesh + 1, "primitives");
     out->patch_count = json_items(json, primitives);
@@ -274,5 +305,6 @@ awt_status glb_read(const void *bytes, size_t size, glb_frame *out, awt_error *e
 void glb_frame_fini(glb_frame *frame)
 {
     free(frame->patches);
+    free(frame->widths);
     *frame = (glb_frame){0};
 }

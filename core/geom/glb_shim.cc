@@ -114,8 +114,17 @@ tinygltf::Node make_node(const glb_frame &frame)
     node.mesh = 0;
     node.translation.assign(frame.head.position, frame.head.position + 3);
     node.rotation.assign(frame.head.orientation, frame.head.orientation + 4);
-    node.extras = tinygltf::Value(
-        Members{{"strands", whole(frame.strands)}, {"points_per_strand", whole(frame.points_per_strand)}});
+    Members extras{{"kind", tinygltf::Value(std::string(frame.kind == GEOM_RIBBON ? "ribbon" : "strands"))},
+                   {"strands", whole(frame.strands)},
+                   {"points_per_strand", whole(frame.points_per_strand)}};
+    if (frame.widths) {
+        tinygltf::Value::Array widths;
+        for (uint32_t i = 0; i < frame.points_per_strand; i++) {
+            widths.push_back(tinygltf::Value(static_cast<double>(frame.widths[i])));
+        }
+        extras["widths"] = tinygltf::Value(widths);
+    }
+    node.extras = tinygltf::Value(extras);
     return node;
 }
 
@@ -165,6 +174,12 @@ awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *e
     } catch (...) {
         return error_set(error, AWT_BAD_VALUE, "tinygltf cannot write this frame");
     }
+}
+
+size_t glb_shim_print(double value, char *text, size_t size)
+{
+    std::to_chars_result result = std::to_chars(text, text + size, value);
+    return static_cast<size_t>(result.ptr - text);
 }
 
 bool glb_shim_number(const char *begin, const char *end, double *out)

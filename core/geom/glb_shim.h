@@ -19,17 +19,23 @@ typedef struct glb_patch {
 
 /* What a GLB of ours says. */
 typedef struct glb_frame {
+    geom_kind kind;
     uint32_t strands, points_per_strand;
     glb_patch *patches; /* [patch_count] */
     uint32_t patch_count;
     const unsigned char *binary; /* [binary_size], the binary chunk */
     size_t binary_size;
+    float *widths; /* [points_per_strand] from root to tip, metres; NULL: not said */
     awt_pose head; /* orientation of length 1 */
     int64_t time_us;
 } glb_frame;
 
 /* Appends the frame as a GLB. AWT_NO_MEMORY, AWT_LIMIT. */
 awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *error);
+
+/* Writes the shortest text that reads as `value` again, exactly, into `text` [size]; returns its length. 24 characters
+ * hold any finite number. */
+size_t glb_shim_print(double value, char *text, size_t size);
 
 /* Reads a JSON number that fills the text from `begin` to `end`, whatever decimal point the host program's locale
  * asks of strtod. False: it is none. */

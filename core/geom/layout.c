@@ -7,6 +7,7 @@
 
 #include "base/assert.h"
 #include "base/error.h"
+#include "geom/topology.h"
 #include "groom/groom.h"
 
 #include <math.h>
@@ -45,16 +46,15 @@ static float middle_half_width(const awt_groom_info *info)
 }
 
 /* The groom's box, made a cube, with room for half a ribbon around it. */
-static draco_box make_box(const awt_groom_info *info, float half_width)
+static draco_box make_box(const awt_groom_info *info, float half_width, int bits)
 {
-    draco_box box = {.bits = GEOM_RIBBON_BITS};
+    draco_box box = {.bits = bits};
     float widest = 0;
     for (int k = 0; k < 3; k++) {
         float extent = info->box_max[k] - info->box_min[k];
         widest = extent > widest ? extent : widest;
     }
-    float margin =
-        half_width + (widest + 2 * half_width + 1.0f / BOX_GRID) * (WIDTH_LEAST_STEPS / (1 << GEOM_RIBBON_BITS));
+    float margin = half_width + (widest + 2 * half_width + 1.0f / BOX_GRID) * (WIDTH_LEAST_STEPS / (float)(1 << bits));
     for (int k = 0; k < 3; k++) {
         box.origin[k] = floorf((info->box_min[k] - margin) * BOX_GRID) / BOX_GRID;
         float extent = ceilf((info->box_max[k] + margin - box.origin[k]) * BOX_GRID) / BOX_GRID;
@@ -65,7 +65,7 @@ static draco_box make_box(const awt_groom_info *info, float half_width)
 
 static void fill_widths(geom_layout *layout, float middle)
 {
-    float least = 0.5f * WIDTH_LEAST_STEPS * draco_box_step(&layout->box);
+    float least = layout->kind == GEOM_RIBBON ? 0.5f * WIDTH_LEAST_STEPS * draco_box_step(&layout->box) : 0;
     for (uint32_t i = 0; i < layout->points_per_strand; i++) {
         float half = middle * width_profile((float)i / (float)(layout->points_per_strand - 1));
         layout->half_width[i] = half > least ? half : least;
@@ -109,49 +109,133 @@ static uint32_t patch_bound(uint32_t strands, uint32_t room)
     return 2 * (strands / room) + 2;
 }
 
-awt_status geom_layout_create(const awt_groom *groom, geom_layout **out, awt_error *error)
+static awt_status check_counts(const awt_groom_info *info, const geom_layout_def *def, awt_error *error)
 {
-    const awt_groom_info *info = &groom->info;
-    const uint32_t per_strand = info->points_per_strand;
-    *out = NULL;
-    if (info->strand_count < 1 || info->strand_count > AWT_MAX_STRANDS || per_strand < 2 ||
-        per_strand > AWT_MAX_POINTS_PER_STRAND) {
+    if (info->strand_count < 1 || info->strand_count > AWT_MAX_STRANDS || info->points_per_strand < 2 ||
+        info->points_per_strand > AWT_MAX_POINTS_PER_STRAND) {
         return error_set(error, AWT_LIMIT, "a frame holds 1 to %d strands of 2 to %d points, not %u of %u",
-                         AWT_MAX_STRANDS, AWT_MAX_POINTS_PER_STRAND, info->strand_count, per_strand);
+                         AWT_MAX_STRANDS, AWT_MAX_POINTS_PER_STRAND, info->strand_count, info->points_per_strand);
     }
-    const uint32_t room = GEOM_MAX_PATCH_VERTICES / (2 * per_strand);
-    geom_layout *layout = calloc(1, sizeof *layout);
-    if (!layout) {
-        goto fail;
+    if (def->bits != 0 && (def->bits < GEOM_LEAST_BITS || def->bits > GEOM_GREATEST_BITS)) {
+        return error_set(error, AWT_BAD_VALUE, "positions are quantised to %d to %d bits, not %d", GEOM_LEAST_BITS,
+                         GEOM_GREATEST_BITS, def->bits);
     }
-    layout->strands = info->strand_count;
-    layout->points_per_strand = per_strand;
-    layout->half_width = calloc(per_strand, sizeof *layout->half_width);
-    layout->patches = calloc(patch_bound(info->strand_count, room), sizeof *layout->patches);
-    if (!layout->half_width || !layout->patches) {
-        goto fail;
-    }
-    layout->box = make_box(info, middle_half_width(info));
-    fill_widths(layout, middle_half_width(info));
-    layout->shape = (ribbon_shape){.points_per_strand = per_strand, .half_width = layout->half_width};
+    return AWT_OK;
+}
+
+/* Widths and the box around them. A line has its width in extras only. */
+static void fill_shape(geom_layout *layout, const awt_groom_info *info, int bits)
+{
+    const bool ribbon = layout->kind == GEOM_RIBBON;
+    const float middle = middle_half_width(info);
+    layout->box = make_box(info, ribbon ? middle : 0, bits ? bits : ribbon ? GEOM_RIBBON_BITS : GEOM_STRANDS_BITS);
+    fill_widths(layout, middle);
+    layout->shape = (ribbon_shape){.points_per_strand = layout->points_per_strand, .half_width = layout->half_width};
     for (int k = 0; k < 3; k++) {
         layout->shape.point_min[k] = info->box_min[k];
         layout->shape.point_max[k] = info->box_max[k];
+        layout->bounds.least[k] = ribbon ? layout->box.origin[k] : info->box_min[k];
+        layout->bounds.greatest[k] = ribbon ? layout->box.origin[k] + layout->box.range : info->box_max[k];
+    }
+}
+
+static bool make_arrays(geom_layout *layout, const awt_groom *groom)
+{
+    const uint32_t per_strand = layout->points_per_strand, room = GEOM_PATCH_POINTS / per_strand;
+    const uint32_t bound = patch_bound(layout->strands, room);
+    layout->patches = calloc(bound, sizeof *layout->patches);
+    if (!layout->patches) {
+        return false;
     }
     fill_patches(layout, groom, room);
-    ASSERT(layout->patch_count <= patch_bound(info->strand_count, room));
+    ASSERT(layout->patch_count <= bound);
     for (uint32_t i = 0; i < layout->patch_count; i++) {
         uint32_t strands = layout->patches[i].strands;
         layout->largest_patch = strands > layout->largest_patch ? strands : layout->largest_patch;
     }
-    layout->indices = calloc(ribbon_index_count(layout->largest_patch, per_strand), sizeof *layout->indices);
-    if (!layout->indices) {
-        goto fail;
+    const uint32_t triangles = topology_triangles(layout->kind, layout->largest_patch, per_strand);
+    layout->indices = calloc(triangles, 3 * sizeof *layout->indices);
+    layout->meshes = calloc(layout->patch_count, sizeof *layout->meshes);
+    if (!layout->indices || !layout->meshes) {
+        return false;
     }
-    ribbon_indices(layout->largest_patch, per_strand, layout->indices);
+    topology_indices(layout->kind, layout->largest_patch, per_strand, layout->indices);
+    return true;
+}
+
+static awt_status make_meshes(geom_layout *layout, awt_error *error)
+{
+    awt_status status = AWT_OK;
+    for (uint32_t i = 0; i < layout->patch_count && status == AWT_OK; i++) {
+        const geom_patch *patch = &layout->patches[i];
+        status = draco_mesh_make(layout_patch_vertices(layout, patch), layout->indices,
+                                 topology_triangles(layout->kind, patch->strands, layout->points_per_strand),
+                                 &layout->meshes[i], error);
+    }
+    return status;
+}
+
+static awt_status make_template(geom_layout *layout, awt_error *error)
+{
+    glb_frame frame = {.kind = layout->kind,
+                       .strands = layout->strands,
+                       .points_per_strand = layout->points_per_strand,
+                       .patches = calloc(layout->patch_count, sizeof *frame.patches),
+                       .patch_count = layout->patch_count,
+                       .widths = calloc(layout->points_per_strand, sizeof *frame.widths)};
+    awt_status status = AWT_NO_MEMORY;
+    if (frame.patches && frame.widths) {
+        for (uint32_t i = 0; i < layout->patch_count; i++) {
+            frame.patches[i] = (glb_patch){.first_strand = layout->patches[i].first_strand,
+                                           .strands = layout->patches[i].strands,
+                                           .vertices = layout->meshes[i].vertices,
+                                           .triangles = layout->meshes[i].triangles};
+        }
+        for (uint32_t i = 0; i < layout->points_per_strand; i++) {
+            frame.widths[i] = 2 * layout->half_width[i];
+        }
+        status = glb_template_make(&frame, &layout->frame, error);
+    }
+    free(frame.patches);
+    free(frame.widths);
+    return status;
+}
+
+awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def, geom_layout **out, awt_error *error)
+{
+    static const geom_layout_def usual = {.kind = GEOM_RIBBON};
+    const awt_groom_info *info = &groom->info;
+    def = def ? def : &usual;
+    *out = NULL;
+    awt_status status = check_counts(info, def, error);
+    if (status != AWT_OK) {
+        return status;
+    }
+    geom_layout *layout = calloc(1, sizeof *layout);
+    if (!layout) {
+        return error_set(error, AWT_NO_MEMORY, NULL);
+    }
+    layout->kind = def->kind;
+    layout->stock = def->stock;
+    layout->strands = info->strand_count;
+    layout->points_per_strand = info->points_per_strand;
+    layout->half_width = calloc(info->points_per_strand, sizeof *layout->half_width);
+    if (!layout->half_width) {
+        goto no_memory;
+    }
+    fill_shape(layout, info, def->bits);
+    if (!make_arrays(layout, groom)) {
+        goto no_memory;
+    }
+    status = make_meshes(layout, error);
+    status = status == AWT_OK ? make_template(layout, error) : status;
+    if (status != AWT_OK) {
+        geom_layout_destroy(layout);
+        return status;
+    }
     *out = layout;
     return AWT_OK;
-fail:
+no_memory:
     geom_layout_destroy(layout);
     return error_set(error, AWT_NO_MEMORY, NULL);
 }
@@ -159,6 +243,11 @@ fail:
 void geom_layout_destroy(geom_layout *layout)
 {
     if (layout) {
+        for (uint32_t i = 0; layout->meshes && i < layout->patch_count; i++) {
+            draco_mesh_fini(&layout->meshes[i]);
+        }
+        glb_template_fini(&layout->frame);
+        free(layout->meshes);
         free(layout->half_width);
         free(layout->patches);
         free(layout->indices);
@@ -169,4 +258,9 @@ void geom_layout_destroy(geom_layout *layout)
 uint32_t geom_layout_patches(const geom_layout *layout)
 {
     return layout->patch_count;
+}
+
+geom_patch geom_layout_patch(const geom_layout *layout, uint32_t index)
+{
+    return layout->patches[index];
 }

@@ -2,23 +2,31 @@
 #ifndef GEOM_LAYOUT_H
 #define GEOM_LAYOUT_H
 
-#include "geom/draco_shim.h"
+#include "geom/box.h"
+#include "geom/draco_write.h"
 #include "geom/encode.h"
+#include "geom/glb_template.h"
 #include "geom/ribbon.h"
 
-typedef struct geom_patch {
-    uint32_t first_strand, strands;
-} geom_patch;
-
 struct geom_layout {
+    geom_kind kind;
+    bool stock;
     uint32_t strands, points_per_strand;
     ribbon_shape shape;
-    float *half_width; /* [points_per_strand]; the shape's */
-    draco_box box;     /* one for all patches and all frames */
+    float *half_width;      /* [points_per_strand]; the shape's */
+    draco_box box;          /* one for all patches and all frames */
+    quantise_bounds bounds; /* vertices are set onto them */
     geom_patch *patches;
     uint32_t patch_count;
     uint32_t largest_patch; /* strands */
     uint16_t *indices;      /* triangles of the largest patch; a smaller one uses the front of them */
+    draco_mesh *meshes;     /* [patch_count]; of the own encoder */
+    glb_template frame;
 };
+
+static inline uint32_t layout_patch_vertices(const geom_layout *layout, const geom_patch *patch)
+{
+    return patch->strands * layout->points_per_strand * (layout->kind == GEOM_RIBBON ? 2 : 1);
+}
 
 #endif

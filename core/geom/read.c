@@ -1,10 +1,12 @@
-/* read.c: a frame back to strands: container and JSON (glb.h), then each patch's Draco data (draco_shim.h). */
+/* read.c: a frame back to strands: container and JSON (glb.h), then each patch's Draco data: what our own encoder wrote
+ * by our own reader (draco_read.h), anything else by libdraco (draco_shim.h). */
 #include "geom/read.h"
 
 #include "base/error.h"
+#include "geom/draco_read.h"
 #include "geom/draco_shim.h"
 #include "geom/glb.h"
-#include "geom/ribbon.h"
+#include "geom/topology.h"
 
 #include <stdlib.h>
 
@@ -17,21 +19,39 @@ static uint32_t largest_patch(const glb_frame *frame)
     return largest;
 }
 
-static awt_status read_vertices(const glb_frame *frame, float *vertices, awt_error *error)
+/* `vertices` of all patches, each at its strands' place. */
+static awt_status read_patches(const glb_frame *frame, draco_reader *reader, const uint16_t *indices, float *vertices,
+                               awt_error *error)
 {
-    const uint32_t per_strand = frame->points_per_strand;
-    const uint32_t largest = largest_patch(frame);
-    uint16_t *indices = calloc(ribbon_index_count(largest, per_strand), sizeof *indices);
-    if (!indices) {
-        return error_set(error, AWT_NO_MEMORY, NULL);
-    }
-    ribbon_indices(largest, per_strand, indices);
+    const size_t a_strand = (size_t)frame->points_per_strand * topology_vertices_a_point(frame->kind) * 3;
     awt_status status = AWT_OK;
     for (uint32_t i = 0; i < frame->patch_count && status == AWT_OK; i++) {
         const glb_patch *patch = &frame->patches[i];
-        status = draco_shim_decode(frame->binary + patch->offset, patch->size, indices, patch->vertices,
-                                   patch->triangles, vertices + (size_t)patch->first_strand * per_strand * 6, error);
+        const unsigned char *data = frame->binary + patch->offset;
+        float *here = vertices + patch->first_strand * a_strand;
+        if (!draco_read(reader, data, patch->size, indices, patch->vertices, patch->triangles, here)) {
+            status = draco_shim_decode(data, patch->size, indices, patch->vertices, patch->triangles, here, error);
+        }
     }
+    return status;
+}
+
+static awt_status read_vertices(const glb_frame *frame, float *vertices, awt_error *error)
+{
+    const uint32_t per_strand = frame->points_per_strand, largest = largest_patch(frame);
+    const uint32_t triangles = topology_triangles(frame->kind, largest, per_strand);
+    draco_reader *reader = NULL;
+    uint16_t *indices = calloc(triangles, 3 * sizeof *indices);
+    awt_status status = indices ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
+    if (status == AWT_OK) {
+        topology_indices(frame->kind, largest, per_strand, indices);
+        status = draco_reader_create(largest * per_strand * topology_vertices_a_point(frame->kind), triangles, &reader,
+                                     error);
+    }
+    if (status == AWT_OK) {
+        status = read_patches(frame, reader, indices, vertices, error);
+    }
+    draco_reader_destroy(reader);
     free(indices);
     return status;
 }
@@ -46,7 +66,7 @@ static void fill_positions(const float *vertices, size_t points, float *position
     }
 }
 
-awt_status geom_read_ribbons(const void *bytes, size_t size, geom_strands *out, awt_error *error)
+awt_status geom_read_frame(const void *bytes, size_t size, geom_strands *out, awt_error *error)
 {
     glb_frame frame;
     geom_strands strands = {0};
@@ -55,25 +75,31 @@ awt_status geom_read_ribbons(const void *bytes, size_t size, geom_strands *out, 
         return status;
     }
     const size_t points = (size_t)frame.strands * frame.points_per_strand;
-    strands = (geom_strands){.strand_count = frame.strands,
+    const bool ribbon = frame.kind == GEOM_RIBBON;
+    strands = (geom_strands){.kind = frame.kind,
+                             .strand_count = frame.strands,
                              .points_per_strand = frame.points_per_strand,
                              .positions = calloc(points, 3 * sizeof(float)),
-                             .vertices = calloc(points, 6 * sizeof(float)),
+                             .vertices = ribbon ? calloc(points, 6 * sizeof(float)) : NULL,
                              .patch_count = frame.patch_count,
                              .head = frame.head,
                              .time_us = frame.time_us};
-    if (!strands.positions || !strands.vertices) {
+    if (!strands.positions || (ribbon && !strands.vertices)) {
         status = error_set(error, AWT_NO_MEMORY, NULL);
         goto fail;
     }
-    status = read_vertices(&frame, strands.vertices, error);
+    status = read_vertices(&frame, ribbon ? strands.vertices : strands.positions, error);
     if (status != AWT_OK) {
         goto fail;
     }
-    fill_positions(strands.vertices, points, strands.positions);
+    if (ribbon) {
+        fill_positions(strands.vertices, points, strands.positions);
+    }
     for (uint32_t i = 0; i < frame.patch_count; i++) {
         strands.triangle_count += frame.patches[i].triangles;
     }
+    strands.widths = frame.widths; /* the caller's now */
+    frame.widths = NULL;
     *out = strands;
     glb_frame_fini(&frame);
     return AWT_OK;
@@ -87,5 +113,6 @@ void geom_strands_fini(geom_strands *strands)
 {
     free(strands->positions);
     free(strands->vertices);
+    free(strands->widths);
     *strands = (geom_strands){0};
 }

@@ -12,20 +12,28 @@ enum {
     GEOM_MAX_GLB = 64 * 1024 * 1024 /* bytes; nothing longer is written or read */
 };
 
-/* A frame read back: centre lines (mean of a ribbon's two edges), in the head frame. */
+/* What a frame holds, numbered as in QUERY. */
+typedef enum geom_kind {
+    GEOM_RIBBON = 0, /* a ribbon of triangles along each strand: for any viewer */
+    GEOM_STRANDS = 1 /* the strands' points, under triangles that only make them a mesh: for engines */
+} geom_kind;
+
+/* A frame read back, in the head frame. */
 typedef struct geom_strands {
+    geom_kind kind;
     uint32_t strand_count, points_per_strand;
-    float *positions; /* [strand_count][points_per_strand][3] */
-    float *vertices;  /* [strand_count][points_per_strand][2][3]: the ribbon's left and right edge */
+    float *positions; /* [strand_count][points_per_strand][3]: the points; of ribbons the mean of the two edges */
+    float *vertices;  /* of ribbons [strand_count][points_per_strand][2][3]: left and right edge; else NULL */
+    float *widths;    /* [points_per_strand]: of every strand from root to tip, metres */
     uint32_t patch_count, triangle_count;
     awt_pose head;
     int64_t time_us;
 } geom_strands;
 
-/* Reads a GLB that geom_encode_ribbons wrote, from a source that need not be trusted: everything is checked against
- * what is there before it is used. `out` is written on success only: geom_strands_fini.
+/* Reads a GLB that geom_encode wrote, of either kind and by either encoder, from a source that need not be trusted:
+ * everything is checked against what is there before it is used. `out` is written on success only: geom_strands_fini.
  * AWT_BAD_FORMAT, AWT_TRUNCATED, AWT_BAD_VALUE, AWT_LIMIT, AWT_NO_MEMORY. */
-awt_status geom_read_ribbons(const void *bytes, size_t size, geom_strands *out, awt_error *error);
+awt_status geom_read_frame(const void *bytes, size_t size, geom_strands *out, awt_error *error);
 void geom_strands_fini(geom_strands *strands);
 
 #ifdef __cplusplus

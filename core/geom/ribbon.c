@@ -4,22 +4,6 @@
 #include "awt.h"
 #include "base/vec.h"
 
-void ribbon_indices(uint32_t strands, uint32_t points_per_strand, uint16_t *out)
-{
-    for (uint32_t s = 0; s < strands; s++) {
-        for (uint32_t i = 0; i + 1 < points_per_strand; i++) {
-            uint32_t left = (s * points_per_strand + i) * 2;
-            /* steps of +1 and -1 only, which Draco's index coder likes best */
-            *out++ = (uint16_t)left;
-            *out++ = (uint16_t)(left + 1);
-            *out++ = (uint16_t)(left + 2);
-            *out++ = (uint16_t)(left + 3);
-            *out++ = (uint16_t)(left + 2);
-            *out++ = (uint16_t)(left + 1);
-        }
-    }
-}
-
 static float clamp_to(float value, float least, float greatest)
 {
     return value < least ? least : value > greatest ? greatest : value;

@@ -15,15 +15,6 @@ typedef struct ribbon_shape {
     const float *half_width;          /* [points_per_strand], metres */
 } ribbon_shape;
 
-/* Triangle vertices of one strand: 6 to a segment. */
-static inline uint32_t ribbon_index_count(uint32_t strands, uint32_t points_per_strand)
-{
-    return strands * (points_per_strand - 1) * 6;
-}
-
-/* Fills `out` [ribbon_index_count] with the triangles of `strands` ribbons; their vertices number at most 65535. */
-void ribbon_indices(uint32_t strands, uint32_t points_per_strand, uint16_t *out);
-
 /* Fills `vertices` [strands][points][2][3] from `points` [strands][points][3] (head frame) and adds to `clamped` how
  * many points lay outside the shape's box. False: a point is not finite; `vertices` is half written then. */
 bool ribbon_vertices(const ribbon_shape *shape, const float *points, uint32_t strands, float *vertices,

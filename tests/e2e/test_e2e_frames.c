@@ -81,7 +81,7 @@ static double frame_error(const proto_message *frame, const awt_forest *forest)
     awt_groom_get_info(groom, &info);
     geom_strands seen;
     awt_error error = {0};
-    if (geom_read_ribbons(frame->as.frame.glb.bytes, frame->as.frame.glb.length, &seen, &error) != AWT_OK) {
+    if (geom_read_frame(frame->as.frame.glb.bytes, frame->as.frame.glb.length, &seen, &error) != AWT_OK) {
         CHECK_TEXT(error.text, "");
         return INFINITY;
     }

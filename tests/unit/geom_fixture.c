@@ -69,7 +69,15 @@ void geom_fixture_init(geom_fixture *f, uint32_t strands, uint32_t points_per_st
         grow_strand(&r, points_per_strand, f->points + (size_t)s * points_per_strand * 3);
     }
     bound_points(f, points);
-    CHECK_INT(geom_layout_create(&f->groom, &f->layout, NULL), AWT_OK);
+    geom_fixture_layout(f, NULL);
+}
+
+void geom_fixture_layout(geom_fixture *f, const geom_layout_def *def)
+{
+    geom_scratch_destroy(f->scratch);
+    geom_layout_destroy(f->layout);
+    f->scratch = NULL;
+    CHECK_INT(geom_layout_create(&f->groom, def, &f->layout, NULL), AWT_OK);
     ASSERT(f->layout);
     CHECK_INT(geom_scratch_create(f->layout, &f->scratch, NULL), AWT_OK);
     ASSERT(f->scratch);
@@ -86,11 +94,15 @@ void geom_fixture_fini(geom_fixture *f)
     *f = (geom_fixture){0};
 }
 
+geom_frame_def geom_fixture_def(const geom_fixture *f)
+{
+    return (geom_frame_def){.points = f->points, .head = geom_fixture_head, .time_us = GEOM_FIXTURE_TIME_US};
+}
+
 void geom_fixture_encode(geom_fixture *f, geom_frame_stats *stats)
 {
     awt_error error = {0};
-    CHECK_INT(geom_encode_ribbons(f->layout, f->scratch, f->points, &geom_fixture_head, GEOM_FIXTURE_TIME_US, &f->frame,
-                                  stats, &error),
-              AWT_OK);
+    const geom_frame_def def = geom_fixture_def(f);
+    CHECK_INT(geom_encode(f->layout, f->scratch, &def, &f->frame, stats, &error), AWT_OK);
     CHECK_TEXT(error.text, "");
 }

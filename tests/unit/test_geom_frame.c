@@ -31,7 +31,7 @@ static void check_round_trip(uint32_t strands, uint32_t per_strand, uint32_t tre
     awt_error error = {0};
     geom_fixture_init(&f, strands, per_strand, trees);
     geom_fixture_encode(&f, &stats);
-    CHECK_INT(geom_read_ribbons(f.frame.bytes, f.frame.size, &back, &error), AWT_OK);
+    CHECK_INT(geom_read_frame(f.frame.bytes, f.frame.size, &back, &error), AWT_OK);
     CHECK_TEXT(error.text, "");
     CHECK_INT(back.strand_count, strands);
     CHECK_INT(back.points_per_strand, per_strand);
@@ -69,7 +69,7 @@ static void check_patches(uint32_t strands, uint32_t per_strand, uint32_t trees)
 {
     geom_fixture f;
     geom_fixture_init(&f, strands, per_strand, trees);
-    const uint32_t room = GEOM_MAX_PATCH_VERTICES / (2 * per_strand);
+    const uint32_t room = GEOM_PATCH_POINTS / per_strand;
     uint32_t expected_first = 0;
     for (uint32_t i = 0; i < f.layout->patch_count; i++) {
         geom_patch patch = f.layout->patches[i];
@@ -87,14 +87,14 @@ static void check_patches(uint32_t strands, uint32_t per_strand, uint32_t trees)
     geom_fixture_fini(&f);
 }
 
-TEST(geom_patches_are_whole_trees_under_the_vertex_limit)
+TEST(geom_patches_are_whole_trees_under_the_limit_of_points)
 {
     check_patches(10000, 16, 60);
-    check_patches(2047, 16, 1); /* exactly one patch */
+    check_patches(1024, 16, 1); /* exactly one patch */
     check_patches(5000, 16, 1); /* one tree, too large */
     check_patches(5000, 16, 2); /* both too large */
     check_patches(200000, 2, 20000);
-    check_patches(129, 256, 129);
+    check_patches(65, 256, 65);
     check_patches(500, 256, 3);
 }
 
@@ -105,10 +105,10 @@ TEST(geom_layout_refuses_what_is_no_strand)
     awt_error error = {0};
     geom_fixture_init(&f, 3, 4, 1);
     f.groom.info.points_per_strand = 1;
-    CHECK_INT(geom_layout_create(&f.groom, &layout, &error), AWT_LIMIT);
+    CHECK_INT(geom_layout_create(&f.groom, NULL, &layout, &error), AWT_LIMIT);
     CHECK(layout == NULL);
     f.groom.info.points_per_strand = AWT_MAX_POINTS_PER_STRAND + 1;
-    CHECK_INT(geom_layout_create(&f.groom, &layout, &error), AWT_LIMIT);
+    CHECK_INT(geom_layout_create(&f.groom, NULL, &layout, &error), AWT_LIMIT);
     CHECK(strstr(error.text, "257") != NULL);
     geom_fixture_fini(&f);
 }
@@ -141,8 +141,8 @@ TEST(geom_min_and_max_are_those_of_the_decoded_positions_exactly)
     geom_fixture_init(&f, 3000, 16, 3);
     geom_fixture_encode(&f, NULL);
     json_document json = frame_json(&f.frame);
-    CHECK_INT(geom_read_ribbons(f.frame.bytes, f.frame.size, &back, NULL), AWT_OK);
-    CHECK_INT(back.patch_count, 2);
+    CHECK_INT(geom_read_frame(f.frame.bytes, f.frame.size, &back, NULL), AWT_OK);
+    CHECK_INT(back.patch_count, 3);
     uint32_t accessor = json_member(&json, 0, "accessors") + 1;
     for (uint32_t i = 0; back.vertices && i < f.layout->patch_count; i++) {
         uint32_t position = json.tokens[accessor].after; /* indices, then positions, of each patch */
@@ -177,9 +177,8 @@ TEST(geom_encoding_has_no_hidden_state)
     geom_fixture_encode(&f, NULL);
     CHECK_U64(f.frame.size, first.size);
     CHECK_BYTES(f.frame.bytes, first.bytes, first.size);
-    CHECK_INT(
-        geom_encode_ribbons(f.layout, other, f.points, &geom_fixture_head, GEOM_FIXTURE_TIME_US, &f.frame, NULL, NULL),
-        AWT_OK);
+    const geom_frame_def def = geom_fixture_def(&f);
+    CHECK_INT(geom_encode(f.layout, other, &def, &f.frame, NULL, NULL), AWT_OK);
     CHECK_U64(f.frame.size, first.size);
     CHECK_BYTES(f.frame.bytes, first.bytes, first.size);
     geom_scratch_destroy(other);
@@ -187,42 +186,53 @@ TEST(geom_encoding_has_no_hidden_state)
     geom_fixture_fini(&f);
 }
 
-TEST(geom_points_and_poses_that_are_not_finite_are_refused)
+static void check_refuses_what_is_not_finite(const geom_layout_def *layout)
 {
     const float bad[] = {NAN, INFINITY, -INFINITY};
     geom_fixture f;
     geom_fixture_init(&f, 40, 16, 2);
+    geom_fixture_layout(&f, layout);
     for (size_t i = 0; i < 3; i++) {
         awt_error error = {0};
+        geom_frame_def def = geom_fixture_def(&f);
         float kept = f.points[555];
         f.points[555] = bad[i];
-        CHECK_INT(geom_encode_ribbons(f.layout, f.scratch, f.points, &geom_fixture_head, 0, &f.frame, NULL, &error),
-                  AWT_BAD_VALUE);
+        CHECK_INT(geom_encode(f.layout, f.scratch, &def, &f.frame, NULL, &error), AWT_BAD_VALUE);
         CHECK(strstr(error.text, "not a finite number") != NULL);
         f.points[555] = kept;
-        awt_pose head = geom_fixture_head;
-        head.position[1] = (double)bad[i];
-        CHECK_INT(geom_encode_ribbons(f.layout, f.scratch, f.points, &head, 0, &f.frame, NULL, NULL), AWT_BAD_VALUE);
-        head = geom_fixture_head;
-        head.orientation[3] = (double)bad[i];
-        CHECK_INT(geom_encode_ribbons(f.layout, f.scratch, f.points, &head, 0, &f.frame, NULL, NULL), AWT_BAD_VALUE);
+        def.head.position[1] = (double)bad[i];
+        CHECK_INT(geom_encode(f.layout, f.scratch, &def, &f.frame, NULL, NULL), AWT_BAD_VALUE);
+        def.head = geom_fixture_head;
+        def.head.orientation[3] = (double)bad[i];
+        CHECK_INT(geom_encode(f.layout, f.scratch, &def, &f.frame, NULL, NULL), AWT_BAD_VALUE);
     }
     geom_fixture_encode(&f, NULL); /* and the scratch is as good as new */
     geom_fixture_fini(&f);
 }
 
-TEST(geom_points_outside_the_box_are_set_onto_it_and_counted)
+TEST(geom_points_and_poses_that_are_not_finite_are_refused)
+{
+    for (int k = 0; k < 4; k++) {
+        check_refuses_what_is_not_finite(
+            &(geom_layout_def){.kind = k & 1 ? GEOM_STRANDS : GEOM_RIBBON, .stock = k >= 2});
+    }
+}
+
+static void check_sets_onto_the_box(const geom_layout_def *layout)
 {
     geom_fixture f;
     geom_frame_stats stats = {0};
     geom_strands back = {0};
     geom_fixture_init(&f, 40, 16, 2);
+    geom_fixture_layout(&f, layout);
+    geom_fixture_encode(&f, &stats);
+    CHECK_INT(stats.clamped_points, 0);
     f.points[3 * 17] = 1e30f;
     f.points[3 * 40 + 1] = -7.0f;
     f.points[3 * 40 + 2] = 7.0f; /* the same point */
     geom_fixture_encode(&f, &stats);
     CHECK_INT(stats.clamped_points, 2);
-    CHECK_INT(geom_read_ribbons(f.frame.bytes, f.frame.size, &back, NULL), AWT_OK);
+    CHECK_INT(geom_read_frame(f.frame.bytes, f.frame.size, &back, NULL), AWT_OK);
     if (back.positions) {
         double step = draco_box_step(&f.layout->box);
         CHECK_NEAR(back.positions[3 * 17], f.groom.info.box_max[0], step);
@@ -231,6 +241,13 @@ TEST(geom_points_outside_the_box_are_set_onto_it_and_counted)
     }
     geom_strands_fini(&back);
     geom_fixture_fini(&f);
+}
+
+TEST(geom_points_outside_the_box_are_set_onto_it_and_counted)
+{
+    for (int k = 0; k < 4; k++) {
+        check_sets_onto_the_box(&(geom_layout_def){.kind = k & 1 ? GEOM_STRANDS : GEOM_RIBBON, .stock = k >= 2});
+    }
 }
 
 /* Bytes of the first patch after its header and its two counts, and its triangles. */
@@ -253,12 +270,13 @@ static size_t bytes_after_counts(const geom_buffer *frame, uint32_t *triangles)
 }
 
 /* All points in one place are the best that hair can compress. */
-TEST(geom_hair_that_compresses_too_well_for_decoders_is_padded_for_them)
+static void check_padding(const geom_layout_def *layout, uint32_t expected_triangles)
 {
     geom_fixture f;
     geom_strands back = {0};
     uint32_t triangles;
     geom_fixture_init(&f, 500, 16, 2);
+    geom_fixture_layout(&f, layout);
     geom_fixture_encode(&f, NULL);
     CHECK(bytes_after_counts(&f.frame, &triangles) > 3 * triangles); /* usual hair needs no padding */
     for (uint32_t i = 0; i < 500 * 16 * 3; i++) {
@@ -266,10 +284,18 @@ TEST(geom_hair_that_compresses_too_well_for_decoders_is_padded_for_them)
     }
     geom_fixture_encode(&f, NULL);
     CHECK_U64(bytes_after_counts(&f.frame, &triangles), 3 * triangles);
-    CHECK_INT(triangles, 500 * 15 * 2);
-    CHECK_INT(geom_read_ribbons(f.frame.bytes, f.frame.size, &back, NULL), AWT_OK);
+    CHECK_INT(triangles, expected_triangles);
+    CHECK_INT(geom_read_frame(f.frame.bytes, f.frame.size, &back, NULL), AWT_OK);
     geom_strands_fini(&back);
     geom_fixture_fini(&f);
+}
+
+/* Our own ribbons have too many bits for that. */
+TEST(geom_hair_that_compresses_too_well_for_decoders_is_padded_for_them)
+{
+    check_padding(&(geom_layout_def){.kind = GEOM_STRANDS}, 500 * 6);
+    check_padding(&(geom_layout_def){.kind = GEOM_STRANDS, .stock = true}, 500 * 6);
+    check_padding(&(geom_layout_def){.kind = GEOM_RIBBON, .stock = true}, 500 * 15 * 2);
 }
 
 TEST(geom_the_quantisation_box_passes_through_draco_unchanged)
@@ -300,12 +326,12 @@ TEST(geom_hair_that_rests_decodes_to_the_same_bits_while_other_hair_moves)
     geom_strands before = {0}, after = {0};
     geom_fixture_init(&f, 400, 16, 4);
     geom_fixture_encode(&f, NULL);
-    CHECK_INT(geom_read_ribbons(f.frame.bytes, f.frame.size, &before, NULL), AWT_OK);
+    CHECK_INT(geom_read_frame(f.frame.bytes, f.frame.size, &before, NULL), AWT_OK);
     for (uint32_t i = 0; i < 200 * 16; i++) {
         f.points[3 * i] += 0.004f;
     }
     geom_fixture_encode(&f, NULL);
-    CHECK_INT(geom_read_ribbons(f.frame.bytes, f.frame.size, &after, NULL), AWT_OK);
+    CHECK_INT(geom_read_frame(f.frame.bytes, f.frame.size, &after, NULL), AWT_OK);
     if (before.vertices && after.vertices) {
         size_t moved = (size_t)200 * 16 * 6;
         CHECK(memcmp(after.vertices, before.vertices, moved * sizeof(float)) != 0);
@@ -325,6 +351,48 @@ static bool write_file(const char *folder, const char *name, const void *bytes, 
     return file && fclose(file) == 0 && written;
 }
 
+/* Vertices as they went in: a ribbon's, or the strands' points. */
+static void write_vertices(const geom_fixture *f, const char *folder, const char *name)
+{
+    const uint32_t strands = f->layout->strands, per_strand = f->layout->points_per_strand;
+    const bool ribbon = f->layout->kind == GEOM_RIBBON;
+    const size_t size = (size_t)strands * per_strand * (ribbon ? 6 : 3) * sizeof(float);
+    uint32_t clamped = 0;
+    float *vertices = malloc(size);
+    CHECK(vertices != NULL);
+    if (ribbon) {
+        CHECK(ribbon_vertices(&f->layout->shape, f->points, strands, vertices, &clamped));
+    } else {
+        memcpy(vertices, f->points, size);
+    }
+    CHECK(write_file(folder, name, vertices, size));
+    free(vertices);
+}
+
+/* One shape of hair as a frame of each kind by each encoder. */
+static void write_frames(const char *folder, const uint32_t shape[3], bool alike)
+{
+    static const char *const kinds[] = {"ribbon", "strands"};
+    const uint32_t strands = shape[0], per_strand = shape[1];
+    geom_fixture f;
+    char name[64];
+    geom_fixture_init(&f, strands, per_strand, shape[2]);
+    for (uint32_t k = 0; k < strands * per_strand && alike; k++) { /* straight up: padded */
+        f.points[3 * k] = f.points[3 * k + 2] = 0.01f;
+        f.points[3 * k + 1] = 0.1f + 0.0001f * (float)(k % per_strand);
+    }
+    for (int n = 0; n < 4; n++) {
+        const bool stock = n & 1;
+        geom_fixture_layout(&f, &(geom_layout_def){.kind = n / 2 ? GEOM_STRANDS : GEOM_RIBBON, .stock = stock});
+        geom_fixture_encode(&f, NULL);
+        snprintf(name, sizeof name, "%s-%ux%u%s.glb", kinds[n / 2], strands, per_strand, stock ? "-stock" : "");
+        CHECK(write_file(folder, name, f.frame.bytes, f.frame.size));
+        strcat(name, ".f32");
+        write_vertices(&f, folder, name);
+    }
+    geom_fixture_fini(&f);
+}
+
 TEST(geom_frames_for_other_readers)
 {
     const char *folder = getenv("AWT_FRAMES");
@@ -332,29 +400,10 @@ TEST(geom_frames_for_other_readers)
         check_skip("AWT_FRAMES names no folder to write frames to, for tests/node/check_glb.mjs");
         return;
     }
-    const uint32_t shapes[][3] = {{1, 2, 1},       {1, 3, 1},     {40, 16, 3}, {300, 32, 4},
-                                  {10000, 16, 60}, {500, 100, 5}, {600, 24, 6}};
+    const uint32_t shapes[][3] = {{1, 2, 1},       {1, 3, 1},     {1, 16, 1},      {40, 16, 3}, {300, 32, 4},
+                                  {10000, 16, 60}, {500, 100, 5}, {50000, 4, 200}, {600, 24, 6}};
     const size_t count = sizeof shapes / sizeof shapes[0];
     for (size_t i = 0; i < count; i++) {
-        geom_fixture f;
-        char name[64];
-        uint32_t strands = shapes[i][0], per_strand = shapes[i][1], clamped = 0;
-        geom_fixture_init(&f, strands, per_strand, shapes[i][2]);
-        if (i + 1 == count) { /* straight up, all alike: padded */
-            for (uint32_t k = 0; k < strands * per_strand; k++) {
-                f.points[3 * k] = f.points[3 * k + 2] = 0.01f;
-                f.points[3 * k + 1] = 0.1f + 0.0001f * (float)(k % per_strand);
-            }
-        }
-        geom_fixture_encode(&f, NULL);
-        snprintf(name, sizeof name, "ribbons-%ux%u.glb", strands, per_strand);
-        CHECK(write_file(folder, name, f.frame.bytes, f.frame.size));
-        size_t size = (size_t)strands * per_strand * 6 * sizeof(float);
-        float *vertices = malloc(size);
-        CHECK(vertices && ribbon_vertices(&f.layout->shape, f.points, strands, vertices, &clamped));
-        snprintf(name, sizeof name, "ribbons-%ux%u.glb.f32", strands, per_strand);
-        CHECK(write_file(folder, name, vertices, size));
-        free(vertices);
-        geom_fixture_fini(&f);
+        write_frames(folder, shapes[i], i + 1 == count);
     }
 }

@@ -1,0 +1,142 @@
+/* quantise.c: see quantise.h. The loops over a block have a fixed length and no branch: compilers make vectors of them,
+ * as wide as the machine's, and whatever the width the numbers are the same. */
+#include "geom/quantise.h"
+
+#include <string.h>
+
+/* A block's numbers are read again, three places off, when many more have been written: a machine that has them still
+ * on the way to memory would wait for them. */
+enum { BLOCK = QUANTISE_BLOCK, CHUNK_BLOCKS = 20 };
+
+/* The axes' constants, repeated over a block. */
+typedef struct block_constants {
+    float origin[BLOCK], least[BLOCK], greatest[BLOCK];
+    float per_metre;
+    int spare_bits; /* of 16 */
+} block_constants;
+
+/* What a block has met, by coordinate. */
+typedef struct block_findings {
+    int16_t least[BLOCK], greatest[BLOCK];
+    int32_t outside[BLOCK];
+} block_findings;
+
+static void fill_constants(const draco_box *box, const quantise_bounds *bounds, block_constants *c)
+{
+    for (int i = 0; i < BLOCK; i++) {
+        c->origin[i] = box->origin[i % 3];
+        c->least[i] = bounds->least[i % 3];
+        c->greatest[i] = bounds->greatest[i % 3];
+    }
+    c->per_metre = (float)((1 << box->bits) - 1) / box->range;
+    c->spare_bits = 16 - box->bits;
+}
+
+/* Draco rounds by floor(x + 0.5); x is never negative here, so that cutting off is the same. */
+static void quantise_block(const block_constants *restrict c, const float *restrict positions,
+                           int16_t *restrict numbers, block_findings *restrict found)
+{
+    int32_t whole[BLOCK];
+    for (int i = 0; i < BLOCK; i++) {
+        float given = positions[i];
+        float low = given > c->least[i] ? given : c->least[i]; /* not a number: the least */
+        float value = low < c->greatest[i] ? low : c->greatest[i];
+        whole[i] = (int32_t)((value - c->origin[i]) * c->per_metre + 0.5f);
+        found->outside[i] |= value != given;
+    }
+    for (int i = 0; i < BLOCK; i++) {
+        int16_t number = (int16_t)whole[i];
+        numbers[i] = number;
+        found->least[i] = number < found->least[i] ? number : found->least[i];
+        found->greatest[i] = number > found->greatest[i] ? number : found->greatest[i];
+    }
+}
+
+/* `numbers` begins with the three before the block. The sign goes into the lowest bit. */
+static void difference_block(int spare_bits, const int16_t *restrict numbers, uint16_t *restrict symbols)
+{
+    for (int i = 0; i < BLOCK; i++) {
+        int16_t difference = (int16_t)(numbers[i + 3] - numbers[i]);
+        int16_t wrapped = (int16_t)((int16_t)((uint16_t)difference << spare_bits) >> spare_bits);
+        symbols[i] = (uint16_t)((uint16_t)wrapped << 1) ^ (uint16_t)(wrapped >> 15);
+    }
+}
+
+static bool all_finite(const float *positions, size_t coordinates)
+{
+    bool finite = true;
+    for (size_t i = 0; i < coordinates; i++) {
+        finite = finite && positions[i] - positions[i] == 0.0f;
+    }
+    return finite;
+}
+
+static quantise_findings sum_up(const block_findings *found, const float *positions, size_t coordinates)
+{
+    quantise_findings all = {.finite = true};
+    memset(all.least, 0xff, sizeof all.least);
+    for (int i = 0; i < BLOCK; i++) {
+        uint16_t least = (uint16_t)found->least[i], greatest = (uint16_t)found->greatest[i];
+        all.least[i % 3] = least < all.least[i % 3] ? least : all.least[i % 3];
+        all.greatest[i % 3] = greatest > all.greatest[i % 3] ? greatest : all.greatest[i % 3];
+        all.outside = all.outside || found->outside[i];
+    }
+    all.finite = !all.outside || all_finite(positions, coordinates); /* what is not finite is outside, too */
+    return all;
+}
+
+/* The coordinates from number `first` on, as far as a block goes; the last position stands for what is beyond the end.
+ */
+static void take_rest(const float *positions, size_t first, size_t coordinates, float *block)
+{
+    for (size_t k = 0; k < BLOCK; k++) {
+        size_t at = first + k;
+        block[k] = positions[at < coordinates ? at : coordinates - 3 + at % 3];
+    }
+}
+
+quantise_findings quantise_differences(const draco_box *box, const quantise_bounds *bounds, const float *positions,
+                                       size_t count, uint16_t *symbols)
+{
+    const size_t coordinates = 3 * count, blocks = quantise_room(count) / BLOCK;
+    block_constants constants;
+    block_findings found;
+    int16_t numbers[3 + CHUNK_BLOCKS * BLOCK] = {0};
+    fill_constants(box, bounds, &constants);
+    memset(&found, 0, sizeof found);
+    for (int k = 0; k < BLOCK; k++) {
+        found.least[k] = INT16_MAX;
+    }
+    for (size_t first = 0; first < blocks; first += CHUNK_BLOCKS) {
+        const size_t here = blocks - first < CHUNK_BLOCKS ? blocks - first : CHUNK_BLOCKS;
+        for (size_t b = 0; b < here; b++) {
+            const size_t at = (first + b) * BLOCK;
+            float rest[BLOCK];
+            if (at + BLOCK > coordinates) {
+                take_rest(positions, at, coordinates, rest);
+            }
+            quantise_block(&constants, at + BLOCK > coordinates ? rest : positions + at, numbers + 3 + b * BLOCK,
+                           &found);
+        }
+        for (size_t b = 0; b < here; b++) {
+            difference_block(constants.spare_bits, numbers + b * BLOCK, symbols + (first + b) * BLOCK);
+        }
+        memcpy(numbers, numbers + here * BLOCK, 3 * sizeof *numbers);
+    }
+    return sum_up(&found, positions, coordinates);
+}
+
+void quantise_sum_up(int bits, const uint16_t *symbols, size_t count, uint16_t *numbers)
+{
+    const uint32_t mask = (1u << bits) - 1;
+    uint32_t x = 0, y = 0, z = 0;
+    for (size_t i = 0; i < 3 * count; i += 3) {
+        uint32_t a = symbols[i], b = symbols[i + 1], c = symbols[i + 2];
+        x = (x + ((a >> 1) ^ (0 - (a & 1)))) & mask;
+        y = (y + ((b >> 1) ^ (0 - (b & 1)))) & mask;
+        z = (z + ((c >> 1) ^ (0 - (c & 1)))) & mask;
+        numbers[i] = (uint16_t)x;
+        numbers[i + 1] = (uint16_t)y;
+        numbers[i + 2] = (uint16_t)z;
+    }
+}
