@@ -2,9 +2,8 @@
  *
  * A tree is quiet while no node of it moves faster than a centimetre a second against the head and the world is still
  * (the longer it has been still, the less is asked: hair that creeps back over a shoulder would take a minute); when it
- * has
- * been quiet for half a second and is merged to its coarsest nodes, it sleeps: its velocities become exactly zero and
- * only the head carries it. Its offsets go on relaxing until they have arrived, so that it sleeps in style. */
+ * has been quiet for half a second and is merged to its coarsest nodes, it sleeps: its velocities become exactly zero
+ * and only the head carries it. Its offsets go on relaxing until they have arrived, so that it sleeps in style. */
 #include "sim/rest.h"
 
 #include "sim/embed.h"

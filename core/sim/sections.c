@@ -5,7 +5,7 @@
 #include "base/crc32c.h"
 #include "base/error.h"
 
-enum { SECTIONS_FORMAT = 1, HEADER_SIZE = 16, ENTRY_SIZE = 24, CRC_SIZE = 4 };
+enum { SECTIONS_FORMAT = 2, HEADER_SIZE = 16, ENTRY_SIZE = 24, CRC_SIZE = 4 };
 enum { ENTRY_CRC = 4, ENTRY_OFFSET = 8, ENTRY_BYTES = 16 };
 
 static const unsigned char sections_magic[4] = {'A', 'W', 'T', 'S'};

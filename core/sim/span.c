@@ -7,7 +7,10 @@
 #define SPAN_UNIT_SLACK 1e-3
 
 static const size_t kind_bytes[] = {
-    [SPAN_U16] = 2, [SPAN_U32] = 4, [SPAN_I64] = 8, [SPAN_F32] = 4, [SPAN_UNIT] = 4,
+    [SPAN_U32] = 4,
+    [SPAN_I64] = 8,
+    [SPAN_F32] = 4,
+    [SPAN_UNIT] = 4,
 };
 
 size_t span_bytes(const span *s)
@@ -19,12 +22,7 @@ static void number_store(span_kind kind, unsigned char *out, const void *number)
 {
     uint64_t u64;
     uint32_t u32;
-    uint16_t u16;
     switch (kind) {
-    case SPAN_U16:
-        memcpy(&u16, number, sizeof u16);
-        store_u16(out, u16);
-        break;
     case SPAN_I64:
         memcpy(&u64, number, sizeof u64);
         store_u64(out, u64);
@@ -41,14 +39,10 @@ static void number_store(span_kind kind, unsigned char *out, const void *number)
 /* Gives the number's value too, for the check; beyond 2^53 rounded, which no range reaches. */
 static double number_load(span_kind kind, const unsigned char *in, void *number)
 {
-    uint16_t u16 = load_u16(in);
     uint32_t u32;
     int64_t i64;
     float f32;
     switch (kind) {
-    case SPAN_U16:
-        memcpy(number, &u16, sizeof u16);
-        return u16;
     case SPAN_U32:
         u32 = load_u32(in);
         memcpy(number, &u32, sizeof u32);

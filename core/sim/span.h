@@ -6,7 +6,7 @@
 #include "base/codec.h"
 
 /* SPAN_UNIT: floats, every four a unit quaternion. */
-typedef enum span_kind { SPAN_U16, SPAN_U32, SPAN_I64, SPAN_F32, SPAN_UNIT } span_kind;
+typedef enum span_kind { SPAN_U32, SPAN_I64, SPAN_F32, SPAN_UNIT } span_kind;
 
 typedef struct span {
     const char *name; /* of its section */

@@ -41,6 +41,17 @@ static awt_forest *moved_forest(const awt_groom *groom)
     return f;
 }
 
+/* Nor does anything that was refused come to light later. */
+static void check_they_go_on_alike(awt_forest *f, awt_forest *untouched)
+{
+    wild w = wild_make(2, 1.0);
+    for (int n = 6; n <= 20; n++) {
+        wild_advance(f, &w, (int64_t)n * AWT_STEP_US, NULL);
+        wild_advance(untouched, &w, (int64_t)n * AWT_STEP_US, NULL);
+    }
+    CHECK_U64(awt_forest_hash(f), awt_forest_hash(untouched));
+}
+
 TEST(every_parameter_has_a_range_with_its_default_inside)
 {
     CHECK_INT(sizeof(awt_params), awt_param_count() * sizeof(float));
@@ -89,12 +100,7 @@ TEST(every_parameter_out_of_range_is_refused_by_name_and_changes_nothing)
         CHECK_BYTES(&after, &good, sizeof after);
     }
     CHECK_U64(awt_forest_hash(f), hash);
-    wild w = wild_make(2, 1.0); /* nor does anything come to light later */
-    for (int n = 6; n <= 20; n++) {
-        wild_advance(f, &w, (int64_t)n * AWT_STEP_US, NULL);
-        wild_advance(untouched, &w, (int64_t)n * AWT_STEP_US, NULL);
-    }
-    CHECK_U64(awt_forest_hash(f), awt_forest_hash(untouched));
+    check_they_go_on_alike(f, untouched);
     awt_forest_destroy(f), awt_forest_destroy(untouched);
     awt_groom_destroy(groom);
 }
@@ -127,11 +133,7 @@ TEST(a_forest_refuses_bad_motion_and_goes_on_as_if_it_had_never_come)
         CHECK(error.status != AWT_OK && error.text[0]);
         CHECK_U64(awt_forest_hash(f), hash);
     }
-    for (int n = 6; n <= 20; n++) {
-        wild_advance(f, &w, (int64_t)n * AWT_STEP_US, NULL);
-        wild_advance(untouched, &w, (int64_t)n * AWT_STEP_US, NULL);
-    }
-    CHECK_U64(awt_forest_hash(f), awt_forest_hash(untouched));
+    check_they_go_on_alike(f, untouched);
     awt_forest_destroy(f), awt_forest_destroy(untouched);
     awt_groom_destroy(groom);
 }
