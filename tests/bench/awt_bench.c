@@ -12,6 +12,7 @@ static const struct {
     const char *help;
 } SUBCOMMANDS[] = {
     {"paper", bench_paper, "the table of the paper's §5.2: single level against AWT, for the four styles"},
+    {"encode", bench_encode, "frames: encoding, decoding and size, beside stock libdraco"},
 };
 
 int main(int argc, char **argv)

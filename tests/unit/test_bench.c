@@ -1,4 +1,4 @@
-/* test_bench.c: what awt-bench paper says, as far as it does not depend on the clock. */
+/* test_bench.c: what awt-bench says, as far as it does not depend on the clock. */
 #include "check.h"
 
 #include "geom/json.h"
@@ -8,19 +8,19 @@
 #include <string.h>
 #include <sys/wait.h>
 
-/* Runs awt-bench paper with its output thrown away; the exit code, or -1. */
-static int run_paper(const char *arguments)
+/* Runs awt-bench with its output thrown away; the exit code, or -1. */
+static int run_bench(const char *subcommand, const char *arguments)
 {
     char command[600];
-    int length = snprintf(command, sizeof command, "'%s/awt-bench' paper %s >/dev/null 2>&1", check_build_directory(),
-                          arguments);
+    int length = snprintf(command, sizeof command, "'%s/awt-bench' %s %s >/dev/null 2>&1", check_build_directory(),
+                          subcommand, arguments);
     int status = length > 0 && (size_t)length < sizeof command ? system(command) : -1;
     return status != -1 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 static bool bench_is_built(void)
 {
-    bool built = run_paper("--version") == 0;
+    bool built = run_bench("paper", "--version") == 0;
     if (!built) {
         check_skip("awt-bench is not built");
     }
@@ -43,7 +43,7 @@ TEST(bench_writes_the_figures_of_each_style_as_json)
     snprintf(path, sizeof path, "%s/bench-test.json", check_build_directory());
     snprintf(arguments, sizeof arguments,
              "--styles long --strands 1000 --points 8 --seconds 1.8 --theta 0.05 --workers 2 --json '%s'", path);
-    CHECK_INT(run_paper(arguments), 0);
+    CHECK_INT(run_bench("paper", arguments), 0);
     size_t size;
     char *text = (char *)check_read_file(path, &size);
     json_document json = {0};
@@ -78,6 +78,55 @@ TEST(bench_refuses_what_it_cannot_measure)
         return;
     }
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) {
-        CHECK_INT(run_paper(wrong[k]), 2);
+        CHECK_INT(run_bench("paper", wrong[k]), 2);
     }
+}
+
+/* One row of the encoder's figures. */
+static void check_row(const json_document *json, uint32_t row, const char *kind, const char *moving, double bits)
+{
+    CHECK(json_is_text(json, json_member(json, row, "kind"), kind));
+    CHECK(json_is_text(json, json_member(json, row, "moving"), moving));
+    CHECK(json_is_text(json, json_member(json, row, "level"), "full"));
+    CHECK_NEAR(number_at(json, row, "quantisation_bits"), bits, 0);
+    CHECK_NEAR(number_at(json, row, "points"), 16000, 0);
+    double bytes = number_at(json, row, "bytes_per_point"), entropy = number_at(json, row, "entropy_bits_per_point");
+    CHECK(bytes < 1.03 * number_at(json, row, "stock_bytes_per_point"));
+    CHECK(entropy > 8 && entropy < 8.5 * bytes);
+    CHECK_NEAR(number_at(json, row, "mbit_s_at_60hz"), bytes * 16000 * 8 * 60e-6, 1e-9);
+    double error_mm = number_at(json, row, "max_error_mm");
+    CHECK(error_mm > 0.01 && error_mm < 0.5);
+    CHECK(number_at(json, row, "encode_ms") > 0 && number_at(json, row, "stock_encode_ms") > 0);
+    CHECK(number_at(json, row, "decode_ms") > 0 && number_at(json, row, "stock_decode_ms") > 0);
+}
+
+TEST(bench_writes_what_frames_cost_as_json)
+{
+    char path[300], arguments[400];
+    if (!bench_is_built()) {
+        return;
+    }
+    snprintf(path, sizeof path, "%s/bench-encode.json", check_build_directory());
+    snprintf(arguments, sizeof arguments, "--strands 1000 --frames 2 --stride 3 --json '%s'", path);
+    CHECK_INT(run_bench("encode", arguments), 0);
+    size_t size;
+    char *text = (char *)check_read_file(path, &size);
+    json_document json = {0};
+    CHECK(text != NULL);
+    if (text && json_read(text, size, &json, NULL) == AWT_OK) {
+        static const char *const movings[] = {"all", "quarter", "none"};
+        uint32_t rows = json_member(&json, 0, "rows"), row = rows + 1;
+        CHECK_INT(json_items(&json, rows), 6);
+        for (int i = 0; i < 6 && json_items(&json, rows) == 6; i++, row = json.tokens[row].after) {
+            check_row(&json, row, i < 3 ? "ribbon" : "strands", movings[i % 3], i < 3 ? 14 : 12);
+        }
+    } else {
+        CHECK(json.count > 0); /* it is no JSON */
+    }
+    json_fini(&json);
+    free(text);
+    remove(path);
+    CHECK_INT(run_bench("encode", "--style bald"), 2);
+    CHECK_INT(run_bench("encode", "--motion /no/such/motion.bvh"), 2);
+    CHECK_INT(run_bench("encode", "--groom /no/such/hair.tfx"), 1);
 }
