@@ -6,14 +6,12 @@
 
 #include "groom/groom.h"
 
-typedef float evaluate_four __attribute__((vector_size(16)));
+enum {
+    RECORD = 8,  /* floats of a section or a station: a point, 0, a quaternion */
+    SECTIONS = 4 /* that a station's curve is made of */
+};
 
-static evaluate_four four_load(const float *from)
-{
-    evaluate_four a;
-    memcpy(&a, from, sizeof a);
-    return a;
-}
+typedef float evaluate_record __attribute__((vector_size(4 * RECORD)));
 
 /* Catmull-Rom between sections `from` and `to`; beyond the ends the curve goes on straight. */
 static evaluate_tap tap_at(uint32_t sections, uint32_t points, uint32_t station)
@@ -30,12 +28,13 @@ static evaluate_tap tap_at(uint32_t sections, uint32_t points, uint32_t station)
         c += 2.0f * d, b -= d, d = 0.0f;
     }
     uint32_t first = from > 0 ? from - 1 : 0;
-    first = first + 4 <= sections ? first : sections > 4 ? sections - 4 : 0;
-    evaluate_tap tap = {.first = first, .from = from, .to = from + 1, .blend = t};
-    const float weight[4] = {a, b, c, d};
-    for (int k = 0; k < 4; k++) { /* section from - 1 + k */
-        if (weight[k] != 0.0f) {
-            tap.weight[from + (uint32_t)k - 1 - first] = weight[k];
+    first = first + SECTIONS <= sections ? first : sections > SECTIONS ? sections - SECTIONS : 0;
+    const float weight[4] = {a, b, c, d}, blend[4] = {0.0f, 1.0f - t, t, 0.0f};
+    evaluate_tap tap = {.first = first};
+    for (uint32_t k = 0; k < 4; k++) { /* section from - 1 + k */
+        uint32_t at = from + k - 1 - first;
+        for (uint32_t i = 0; i < RECORD && at < SECTIONS; i++) {
+            tap.weight[RECORD * at + i] = i < 4 ? weight[k] : blend[k];
         }
     }
     return tap;
@@ -47,43 +46,58 @@ void evaluate_lay_out(evaluate_table *table, arena *memory, uint32_t sections, u
     table->sections = sections;
     table->stride = (points + LANES - 1) / LANES * LANES;
     table->taps = ARENA_PUSH(memory, evaluate_tap, points);
-    table->centres = ARENA_PUSH(memory, float, 4 * (size_t)(sections > 4 ? sections : 4));
-    table->mixed = ARENA_PUSH(memory, float, 8 * (size_t)table->stride);
+    table->records = ARENA_PUSH(memory, float, RECORD *(size_t)(sections > SECTIONS ? sections : SECTIONS));
+    table->mixed = ARENA_PUSH(memory, float, RECORD *(size_t)table->stride);
     table->column = ARENA_PUSH(memory, float, (size_t)EVALUATE_COLUMNS * table->stride);
     for (uint32_t i = 0; memory->base && table->taps && i < points; i++) {
         table->taps[i] = tap_at(sections, points, i);
     }
+    for (uint32_t s = sections; memory->base && table->records && s < SECTIONS; s++) { /* of weight 0 */
+        memset(table->records + RECORD * (size_t)s, 0, RECORD * sizeof *table->records);
+    }
+}
+
+/* The sections' records. A quaternion and its negative are the same turn: each takes the sign that is nearer to the one
+ * before it, so that the way between any two neighbours is the short one. */
+static void sections_record(const evaluate_table *table, const vec3 *centres, const quat *frames)
+{
+    quat before = frames[0];
+    for (uint32_t s = 0; s < table->sections; s++) {
+        const quat q = frames[s];
+        const float sign = before.x * q.x + before.y * q.y + before.z * q.z + before.w * q.w < 0.0f ? -1.0f : 1.0f;
+        before = (quat){sign * q.x, sign * q.y, sign * q.z, sign * q.w};
+        memcpy(table->records + RECORD * (size_t)s, &centres[s], sizeof *centres);
+        memcpy(table->records + RECORD * (size_t)s + 4, &before, sizeof before);
+    }
 }
 
 /* Point and quaternion of every station, not yet of length 1. */
-static void stations_mix(evaluate_table *table, const vec3 *centres, const quat *frames)
+static void stations_mix(const evaluate_table *table)
 {
-    for (uint32_t s = 0; s < table->sections; s++) {
-        memcpy(table->centres + 4 * (size_t)s, &centres[s], sizeof *centres);
-    }
     for (uint32_t i = 0; i < table->points; i++) {
         const evaluate_tap *tap = &table->taps[i];
-        const float *near = table->centres + 4 * (size_t)tap->first;
-        evaluate_four point = four_load(near) * tap->weight[0] + four_load(near + 4) * tap->weight[1] +
-                              four_load(near + 8) * tap->weight[2] + four_load(near + 12) * tap->weight[3];
-        const quat *p = &frames[tap->from], *q = &frames[tap->to];
-        float dot = p->x * q->x + p->y * q->y + p->z * q->z + p->w * q->w;
-        evaluate_four turn =
-            four_load(&p->x) * (1.0f - tap->blend) + four_load(&q->x) * (dot < 0.0f ? -tap->blend : tap->blend);
-        memcpy(table->mixed + 8 * (size_t)i, &point, sizeof point);
-        memcpy(table->mixed + 8 * (size_t)i + 4, &turn, sizeof turn);
+        const float *near = table->records + RECORD * (size_t)tap->first;
+        evaluate_record mixed = {0};
+        for (size_t k = 0; k < SECTIONS; k++) {
+            evaluate_record section, weight;
+            memcpy(&section, near + RECORD * k, sizeof section);
+            memcpy(&weight, tap->weight + RECORD * k, sizeof weight);
+            mixed += section * weight;
+        }
+        memcpy(table->mixed + RECORD * (size_t)i, &mixed, sizeof mixed);
     }
 }
 
 void evaluate_stations(evaluate_table *table, const vec3 *centres, const quat *frames)
 {
     const uint32_t stride = table->stride;
-    stations_mix(table, centres, frames);
+    sections_record(table, centres, frames);
+    stations_mix(table);
     for (uint32_t i = 0; i < stride; i += LANES) {
         const float *record[LANES];
         lanes m[8];
         for (uint32_t k = 0; k < LANES; k++) {
-            record[k] = table->mixed + 8 * (size_t)(i + k);
+            record[k] = table->mixed + RECORD * (size_t)(i + k);
         }
         lanes_turn8(record, m);
         lanes scale = lanes_of(1.0f) / lanes_sqrt(m[4] * m[4] + m[5] * m[5] + m[6] * m[6] + m[7] * m[7]);

@@ -12,12 +12,10 @@
 
 #include <stdint.h>
 
-/* Where a station stands: the same for all GCs of a groom. */
+/* What a station is made of: the same for all GCs of a groom. */
 typedef struct evaluate_tap {
-    float weight[4];   /* of four sections from `first` on: the curve */
-    uint32_t first;    /* 0 .. sections - 4, or 0 */
-    uint32_t from, to; /* sections between which the frame is blended */
-    float blend;       /* share of `to` */
+    float weight[32]; /* [4][8]: of four sections from `first` on, four times for the curve and four for the frame */
+    uint32_t first;   /* 0 .. sections - 4, or 0 */
 } evaluate_tap;
 
 enum { EVALUATE_COLUMNS = 12 }; /* of a station: the frame's x, y and z axis in the head frame, y along; the point */
@@ -27,7 +25,7 @@ enum { EVALUATE_COLUMNS = 12 }; /* of a station: the frame's x, y and z axis in 
 typedef struct evaluate_table {
     uint32_t points, sections, stride;
     evaluate_tap *taps; /* [points] */
-    float *centres;     /* [sections, at least 4][4] */
+    float *records;     /* [sections, at least 4][8]: centre, 0, frame */
     float *mixed;       /* [points][8]: the curve's point and the blended quaternion */
     float *column;      /* [EVALUATE_COLUMNS * stride] */
 } evaluate_table;
