@@ -61,13 +61,15 @@ void evaluate_lay_out(evaluate_table *table, arena *memory, uint32_t sections, u
  * before it, so that the way between any two neighbours is the short one. */
 static void sections_record(const evaluate_table *table, const vec3 *centres, const quat *frames)
 {
-    quat before = frames[0];
+    float sign = 1.0f;
     for (uint32_t s = 0; s < table->sections; s++) {
-        const quat q = frames[s];
-        const float sign = before.x * q.x + before.y * q.y + before.z * q.z + before.w * q.w < 0.0f ? -1.0f : 1.0f;
-        before = (quat){sign * q.x, sign * q.y, sign * q.z, sign * q.w};
-        memcpy(table->records + RECORD * (size_t)s, &centres[s], sizeof *centres);
-        memcpy(table->records + RECORD * (size_t)s + 4, &before, sizeof before);
+        const quat q = frames[s], before = frames[s > 0 ? s - 1 : 0];
+        const float dot = (before.x * q.x + before.y * q.y) + (before.z * q.z + before.w * q.w);
+        sign *= copysignf(1.0f, dot);
+        /* in one piece: the mixing that follows reads whole records */
+        const evaluate_record record = {centres[s].x, centres[s].y, centres[s].z, 0.0f,
+                                        sign * q.x,   sign * q.y,   sign * q.z,   sign * q.w};
+        memcpy(table->records + RECORD * (size_t)s, &record, sizeof record);
     }
 }
 
@@ -77,9 +79,11 @@ static void stations_mix(const evaluate_table *table)
     for (uint32_t i = 0; i < table->points; i++) {
         const evaluate_tap *tap = &table->taps[i];
         const float *near = table->records + RECORD * (size_t)tap->first;
-        evaluate_record mixed = {0};
-        for (size_t k = 0; k < SECTIONS; k++) {
-            evaluate_record section, weight;
+        evaluate_record mixed, section, weight;
+        memcpy(&section, near, sizeof section);
+        memcpy(&weight, tap->weight, sizeof weight);
+        mixed = section * weight;
+        for (size_t k = 1; k < SECTIONS; k++) {
             memcpy(&section, near + RECORD * k, sizeof section);
             memcpy(&weight, tap->weight + RECORD * k, sizeof weight);
             mixed += section * weight;
@@ -88,11 +92,10 @@ static void stations_mix(const evaluate_table *table)
     }
 }
 
-void evaluate_stations(evaluate_table *table, const vec3 *centres, const quat *frames)
+/* The columns of what was mixed. */
+static void stations_turn(evaluate_table *table)
 {
     const uint32_t stride = table->stride;
-    sections_record(table, centres, frames);
-    stations_mix(table);
     for (uint32_t i = 0; i < stride; i += LANES) {
         const float *record[LANES];
         lanes m[8];
@@ -100,26 +103,24 @@ void evaluate_stations(evaluate_table *table, const vec3 *centres, const quat *f
             record[k] = table->mixed + RECORD * (size_t)(i + k);
         }
         lanes_turn8(record, m);
-        lanes scale = lanes_of(1.0f) / lanes_sqrt(m[4] * m[4] + m[5] * m[5] + m[6] * m[6] + m[7] * m[7]);
-        lanes x = m[4] * scale, y = m[5] * scale, z = m[6] * scale, w = m[7] * scale;
+        lanes x = m[4], y = m[5], z = m[6], w = m[7];
         lanes xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z, wx = w * x, wy = w * y,
               wz = w * z;
-        const lanes column[EVALUATE_COLUMNS] = {1.0f - 2.0f * (yy + zz),
-                                                2.0f * (xy + wz),
-                                                2.0f * (xz - wy),
-                                                2.0f * (xy - wz),
-                                                1.0f - 2.0f * (xx + zz),
-                                                2.0f * (yz + wx),
-                                                2.0f * (xz + wy),
-                                                2.0f * (yz - wx),
-                                                1.0f - 2.0f * (xx + yy),
-                                                m[0],
-                                                m[1],
-                                                m[2]};
+        lanes s = 2.0f / ((xx + yy) + (zz + w * w));
+        const lanes column[EVALUATE_COLUMNS] = {1.0f - s * (yy + zz), s * (xy + wz), s * (xz - wy), s * (xy - wz),
+                                                1.0f - s * (xx + zz), s * (yz + wx), s * (xz + wy), s * (yz - wx),
+                                                1.0f - s * (xx + yy), m[0],          m[1],          m[2]};
         for (uint32_t c = 0; c < EVALUATE_COLUMNS; c++) {
             lanes_store(table->column + c * stride + i, column[c]);
         }
     }
+}
+
+void evaluate_stations(evaluate_table *table, const vec3 *centres, const quat *frames)
+{
+    sections_record(table, centres, frames);
+    stations_mix(table);
+    stations_turn(table);
 }
 
 /* LANES points of one strand: their coordinates, side by side. */
