@@ -15,6 +15,9 @@ enum {
 /* The first space, of the level's mean radius. */
 #define PACK_FIRST_SPACE 0.125f
 
+/* Of a cell of the grid: small, for PACK_MEETS bounds what is compared in one. */
+#define PACK_CELL_EXTENTS 1.3f
+
 /* A segment's nearest other GCs. */
 typedef struct neighbours {
     float distance[PACK_NEIGHBOURS]; /* ascending */
@@ -90,7 +93,7 @@ static void packing_round(packing *p, float space_m)
         float around = p->known[n] ? 0.0f : space_m;
         p->boxes[n] = grid_box_of(rest[0], rest[1], around);
     }
-    grid_build(&p->grid, p->boxes, p->count, p->count);
+    grid_build(&p->grid, p->boxes, p->count, p->count, PACK_CELL_EXTENTS);
     for (uint32_t cell = 0; cell < grid_cell_count(&p->grid); cell++) {
         const uint32_t end = p->grid.cell_first[cell + 1];
         for (uint32_t i = p->grid.cell_first[cell]; i < end; i++) {

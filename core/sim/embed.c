@@ -139,9 +139,15 @@ static bool embed_relax_slot(awt_forest *f, uint32_t k, float share)
 void embed_relax(awt_forest *f, tree *t, float dt_s)
 {
     if (f->params.offset_relaxation <= 0.0f || !t->loose) {
+        t->unrelaxed_s = 0.0f;
         return;
     }
-    float share = relaxation_share(dt_s, f->params.offset_relaxation);
+    t->unrelaxed_s += dt_s;
+    if (t->unrelaxed_s < (t->asleep ? EMBED_RELAX_ASLEEP_S : EMBED_RELAX_S)) {
+        return;
+    }
+    float share = relaxation_share(t->unrelaxed_s, f->params.offset_relaxation);
+    t->unrelaxed_s = 0.0f;
     bool near = true;
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
         near = embed_relax_slot(f, k, share) && near;

@@ -277,7 +277,7 @@ uint64_t awt_forest_hash(const awt_forest *f)
     }
     for (uint32_t t = 0; t < groom->info.wisp_count[0]; t++) {
         hash = hash_words(hash, &f->trees[t].quiet_s, 1);
-        hash = hash_words(hash, &f->trees[t].doze_s, 1);
+        hash = hash_words(hash, &f->trees[t].unrelaxed_s, 1);
         for (uint32_t k = f->trees[t].first; k < f->trees[t].first + f->trees[t].count; k++) {
             uint32_t node = f->active_node[k];
             hash = hash_words(hash, &f->position[node], 3);

@@ -7,7 +7,6 @@ enum { GRID_CELLS_PER_BOX = 8, GRID_ENTRIES_PER_BOX = 12, GRID_LEAST_CELLS = 64 
 /* Boxes of a cell that one is compared with before its pairs are taken. */
 enum { GRID_PLACES = 512 };
 
-#define GRID_CELL_EXTENTS 1.3f /* of a mean box */
 #define GRID_LEAST_CELL_M 1e-4f
 #define GRID_GROWTH 1.4f
 
@@ -149,10 +148,10 @@ static void grid_fill(grid *g, uint32_t count)
     }
 }
 
-void grid_build(grid *g, const grid_box *boxes, uint32_t moving, uint32_t count)
+void grid_build(grid *g, const grid_box *boxes, uint32_t moving, uint32_t count, float cell_extents)
 {
     grid_box bounds = grid_bounds(boxes, moving);
-    float cell_m = grid_most(GRID_CELL_EXTENTS * grid_mean_extent(boxes, moving), GRID_LEAST_CELL_M);
+    float cell_m = grid_most(cell_extents * grid_mean_extent(boxes, moving), GRID_LEAST_CELL_M);
     while (!grid_divide(g, &bounds, cell_m) || !grid_measure(g, boxes, count)) {
         cell_m *= GRID_GROWTH;
     }

@@ -68,8 +68,9 @@ static inline grid_box grid_box_of(vec3 a, vec3 b, float radius)
 /* Room for `boxes` boxes. */
 void grid_lay_out(grid *g, arena *a, size_t boxes);
 
-/* Enters `count` boxes, the first `moving` of which (at least one) move. The boxes are only read. */
-void grid_build(grid *g, const grid_box *boxes, uint32_t moving, uint32_t count);
+/* Enters `count` boxes, the first `moving` of which (at least one) move, into cells of `cell_extents` mean boxes. The
+ * boxes are only read. */
+void grid_build(grid *g, const grid_box *boxes, uint32_t moving, uint32_t count, float cell_extents);
 
 static inline uint32_t grid_cell_count(const grid *g)
 {

@@ -18,8 +18,6 @@
 #define REST_TURNED 1.25e-5
 #define REST_DRAG_AFTER_S 1.5f
 #define REST_DRAG_MOST 300.0f
-/* A sleeper's offsets relax every so often. */
-#define REST_DOZE_S 0.04f
 
 static bool obstacles_are_still(const awt_forest *f)
 {
@@ -98,15 +96,6 @@ void rest_sleepers(awt_forest *f, bool world_is_still, dquat from)
     }
 }
 
-void rest_doze(awt_forest *f, tree *t, float dt_s)
-{
-    t->doze_s += dt_s;
-    if (t->doze_s >= REST_DOZE_S) {
-        embed_relax(f, t, t->doze_s);
-        t->doze_s = 0.0f;
-    }
-}
-
 void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s)
 {
     bool quiet = world_is_still;
@@ -120,7 +109,6 @@ void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s)
         return;
     }
     t->asleep = true;
-    t->doze_s = 0.0f;
     for (uint32_t k = t->first; k < t->first + t->count; k++) {
         f->velocity[f->active_node[k]] = f->acceleration[f->active_node[k]] = (vec3){0, 0, 0};
     }

@@ -17,9 +17,6 @@ float rest_drag(const awt_forest *f);
  */
 void rest_sleepers(awt_forest *f, bool world_is_still, dquat from);
 
-/* A sleeping tree's sub-step: its offsets go on relaxing. */
-void rest_doze(awt_forest *f, tree *t, float dt_s);
-
 /* After the tree's dynamics: counts how long it has been quiet, and lets it fall asleep once all of it has merged. */
 void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s);
 

@@ -208,7 +208,7 @@ static awt_status walk_trees(codec *c, snapshot *s)
         codec_bool(c, &s->forest->trees[t].asleep);
         codec_bool(c, &s->forest->trees[t].loose);
         codec_f32(c, &s->forest->trees[t].quiet_s);
-        codec_f32(c, &s->forest->trees[t].doze_s);
+        codec_f32(c, &s->forest->trees[t].unrelaxed_s);
     }
     return AWT_OK;
 }

@@ -102,7 +102,7 @@ awt_status snapshot_check_trees(const awt_forest *f, awt_error *error)
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
         const tree *tr = &f->trees[t];
         bool merged = tr->count == f->groom->info.sections;
-        bool times = tr->quiet_s >= 0.0f && tr->quiet_s <= 1e9f && tr->doze_s >= 0.0f && tr->doze_s <= 1e9f;
+        bool times = tr->quiet_s >= 0.0f && tr->quiet_s <= 1e9f && tr->unrelaxed_s >= 0.0f && tr->unrelaxed_s <= 1e9f;
         if (!times || (tr->asleep && !merged)) {
             return snapshot_damaged("TREE", error);
         }

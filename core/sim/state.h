@@ -22,10 +22,10 @@
  * arrays, by cross-section, so that parents come before children. Slot `first` is the root. */
 typedef struct tree {
     uint32_t first, count;
-    bool asleep;   /* nothing of it moves relative to the head (rest.c) */
-    bool loose;    /* offsets, frames or radii are not what the groom's rest shape makes them (embed.c) */
-    float quiet_s; /* for so long it has hardly moved */
-    float doze_s;  /* asleep: for so long its offsets have not relaxed */
+    bool asleep;       /* nothing of it moves relative to the head (rest.c) */
+    bool loose;        /* offsets, frames or radii are not what the groom's rest shape makes them (embed.c) */
+    float quiet_s;     /* for so long it has hardly moved */
+    float unrelaxed_s; /* for so long its offsets have not relaxed */
 } tree;
 
 /* parent_node of a node that is not active: whatever parent it gets is a new one. */

@@ -81,7 +81,7 @@ void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_s
     f->time_us = end_us;
     for (uint32_t t = 0; t < trees; t++) {
         if (f->trees[t].asleep) {
-            rest_doze(f, &f->trees[t], dt_s);
+            embed_relax(f, &f->trees[t], dt_s);
             continue;
         }
         step_tree(f, t, dt_s, stats);

@@ -162,24 +162,26 @@ static vec3 overlap_of(const awt_forest *f, const segment *a, const segment *b, 
 /* What decides sets in gradually, forces with the relative motion that makes it a contact and repulsion with the angle,
  * over TOUCH_ANGLE_RAMP of its cosine squared: if it came all at once, two wisps that their style holds in each other
  * would kick each other for ever, and rounding would decide over millimetres. */
-static wisp_contact contact_of(const awt_forest *f, const grid_pair *pairs, uint32_t place, const touch_rule *rule,
-                               const touch_work *w)
+static void contact_fill(const awt_forest *f, const grid_pair *pairs, uint32_t place, const touch_rule *rule,
+                         const touch_work *w, wisp_contact *out)
 {
     uint32_t n = w->met[place];
     const segment *a = &f->segments[pairs[n].a], *b = &f->segments[pairs[n].b];
     vec3 velocity = {w->velocity[0][place], w->velocity[1][place], w->velocity[2][place]};
     float onset = 1.0f - rule->least_speed2 / vec3_dot(velocity, velocity);
-    wisp_contact c = {.of = {f->ends[pairs[n].a], f->ends[pairs[n].b]},
-                      .on = {w->on_a[n], w->on_b[n]},
-                      .mass = a->mass < b->mass ? a->mass : b->mass,
-                      .velocity = vec3_scale(velocity, onset)};
+    out->of[0] = f->ends[pairs[n].a];
+    out->of[1] = f->ends[pairs[n].b];
+    out->on[0] = w->on_a[n];
+    out->on[1] = w->on_b[n];
+    out->mass = a->mass < b->mass ? a->mass : b->mass;
+    out->velocity = vec3_scale(velocity, onset);
+    out->overlap = (vec3){0, 0, 0};
     if (w->crossing[n / LANES] >> n % LANES & 1) {
         float ab = vec3_dot(a->along, b->along);
         float ramp = rule->cosine2 - ab * ab / (vec3_dot(a->along, a->along) * vec3_dot(b->along, b->along));
         onset *= ramp < TOUCH_ANGLE_RAMP ? ramp / TOUCH_ANGLE_RAMP : 1.0f;
-        c.overlap = vec3_scale(overlap_of(f, a, b, &c), onset);
+        out->overlap = vec3_scale(overlap_of(f, a, b, out), onset);
     }
-    return c;
 }
 
 uint32_t touch_find(const awt_forest *f, const touch_rule *rule, const grid_pair *pairs, uint32_t count,
@@ -194,7 +196,7 @@ uint32_t touch_find(const awt_forest *f, const touch_rule *rule, const grid_pair
         rubbing += lanes_list(touch_rub(f, pairs, n, met, rule->least_speed2, &w), n, w.rubbing + rubbing);
     }
     for (uint32_t n = 0; n < rubbing; n++) {
-        out[n] = contact_of(f, pairs, w.rubbing[n], rule, &w);
+        contact_fill(f, pairs, w.rubbing[n], rule, &w, &out[n]);
     }
     return rubbing;
 }

@@ -327,7 +327,7 @@ TEST(the_grid_visits_every_pair_of_overlapping_boxes_once)
         grid_lay_out(&g, &counting, BOXES);
         CHECK(arena_init(&memory, counting.used));
         grid_lay_out(&g, &memory, BOXES);
-        grid_build(&g, boxes, moving, BOXES);
+        grid_build(&g, boxes, moving, BOXES, n % 2 ? 1.3f : 2.4f);
         grid_visit_pairs(&g, boxes, moving, count_pairs, met);
         uint32_t overlapping = 0, missed = 0, wrong = 0;
         for (uint32_t i = 0; i < moving; i++) {

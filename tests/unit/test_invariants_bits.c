@@ -106,7 +106,7 @@ TEST(every_parameter_has_its_effect)
     static const param_change changes[] = {
         {"split_threshold", 0.1f, BOTH},
         {"split_hysteresis", 0.1f, BOTH},
-        {"merge_velocity", 0.5f, BOTH},
+        {"merge_velocity", 0.01f, BOTH},
 
         {"residence", 0.02f, BOTH},
         {"acceleration_tau", 0, BOTH},
