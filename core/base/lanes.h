@@ -133,6 +133,38 @@ static inline void lanes_turn4(const float *const records[LANES], lanes out[4])
 #endif
 }
 
+/* The way back: float k of each record is what in[k] holds of it. */
+static inline void lanes_spread4(const lanes in[4], float *const records[LANES])
+{
+#if defined(__AVX__)
+    typedef float four __attribute__((vector_size(16)));
+    lanes a = __builtin_shufflevector(in[0], in[1], 0, 8, 1, 9, 4, 12, 5, 13);
+    lanes b = __builtin_shufflevector(in[2], in[3], 0, 8, 1, 9, 4, 12, 5, 13);
+    lanes c = __builtin_shufflevector(in[0], in[1], 2, 10, 3, 11, 6, 14, 7, 15);
+    lanes d = __builtin_shufflevector(in[2], in[3], 2, 10, 3, 11, 6, 14, 7, 15);
+    const lanes r[4] = {__builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13),
+                        __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15),
+                        __builtin_shufflevector(c, d, 0, 1, 8, 9, 4, 5, 12, 13),
+                        __builtin_shufflevector(c, d, 2, 3, 10, 11, 6, 7, 14, 15)};
+    for (int k = 0; k < 4; k++) {
+        four low = __builtin_shufflevector(r[k], r[k], 0, 1, 2, 3),
+             high = __builtin_shufflevector(r[k], r[k], 4, 5, 6, 7);
+        memcpy(records[k], &low, sizeof low);
+        memcpy(records[k + 4], &high, sizeof high);
+    }
+#else
+    const float *rows[LANES];
+    lanes turned[4];
+    for (int k = 0; k < LANES; k++) {
+        rows[k] = (const float *)&in[k];
+    }
+    lanes_turn4(rows, turned);
+    for (int k = 0; k < LANES; k++) {
+        lanes_store(records[k], turned[k]);
+    }
+#endif
+}
+
 /* LANES records of eight floats each, side by side: out[i] holds float i of all. */
 static inline void lanes_turn8(const float *const records[LANES], lanes out[8])
 {
@@ -160,9 +192,34 @@ static inline lanes3 lanes3_mad(lanes3 a, lanes3 b, lanes s)
     return (lanes3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
 }
 
+static inline lanes3 lanes3_cross(lanes3 a, lanes3 b)
+{
+    return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static inline lanes3 lanes3_select(lanes_mask mask, lanes3 yes, lanes3 no)
+{
+    return (lanes3){lanes_select(mask, yes.x, no.x), lanes_select(mask, yes.y, no.y), lanes_select(mask, yes.z, no.z)};
+}
+
 static inline lanes lanes3_dot(lanes3 a, lanes3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/* vec3_unit and vec3_orthogonal, lane by lane. */
+static inline lanes3 lanes3_unit(lanes3 a, lanes3 otherwise)
+{
+    lanes length = lanes_sqrt(lanes3_dot(a, a)), s = lanes_of(1.0f) / length;
+    return lanes3_select(length > 1e-12f, (lanes3){a.x * s, a.y * s, a.z * s}, otherwise);
+}
+
+static inline lanes3 lanes3_orthogonal(lanes3 a)
+{
+    const lanes zero = lanes_of(0), one = lanes_of(1);
+    lanes_mask steep = (a.x < 0.6f) & (a.x > -0.6f);
+    lanes3 other = {lanes_select(steep, one, zero), lanes_select(steep, zero, one), zero};
+    return lanes3_unit(lanes3_cross(a, other), (lanes3){zero, zero, one});
 }
 
 /* LANES points x y z, one after the other. */

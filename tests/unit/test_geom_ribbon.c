@@ -1,12 +1,14 @@
 /* test_geom_ribbon.c: the shape of a ribbon: flat on the head, without twist, never thinner than it can bear. */
 #include "check.h"
 
+#include "base/crc32c.h"
 #include "base/vec.h"
 #include "geom/layout.h"
 #include "unit/geom_fixture.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static vec3 vertex_at(const float *vertices, uint32_t i)
 {
@@ -94,6 +96,66 @@ TEST(geom_ribbons_of_degenerate_strands_have_their_width)
         }
     }
     CHECK_INT(clamped, 0);
+}
+
+/* Strands are taken several at a time: how many, and which, makes no difference to any. */
+TEST(geom_ribbons_are_the_same_whatever_strands_are_beside_them)
+{
+    const uint32_t per_strand[] = {2, 3, 4, 5, 16, 255, 256};
+    for (size_t n = 0; n < sizeof per_strand / sizeof per_strand[0]; n++) {
+        const size_t a_strand = 6 * (size_t)per_strand[n];
+        geom_fixture f;
+        geom_fixture_init(&f, 21, per_strand[n], 1);
+        float *alone = calloc(21, a_strand * sizeof *alone), *beside = calloc(22, a_strand * sizeof *beside);
+        uint32_t clamped = 0, clamped_beside = 0;
+        f.points[0] = f.points[3 * per_strand[n]] = 9; /* outside: one point each of the first and second strand */
+        for (uint32_t s = 0; s < 21; s++) {
+            CHECK(ribbon_vertices(&f.layout->shape, f.points + s * a_strand / 2, 1, alone + s * a_strand, &clamped));
+        }
+        CHECK_INT(clamped, 2);
+        for (uint32_t strands = 1; strands <= 21; strands++) {
+            memset(beside, 0, 22 * a_strand * sizeof *beside);
+            clamped_beside = 0;
+            CHECK(ribbon_vertices(&f.layout->shape, f.points, strands, beside, &clamped_beside));
+            CHECK(memcmp(beside, alone, strands * a_strand * sizeof *beside) == 0);
+            CHECK(beside[strands * a_strand] == 0);
+            CHECK_INT(clamped_beside, strands > 1 ? 2 : 1);
+        }
+        free(alone);
+        free(beside);
+        geom_fixture_fini(&f);
+    }
+}
+
+TEST(geom_ribbons_refuse_a_point_that_is_not_finite_in_any_place)
+{
+    const float wrong[] = {NAN, INFINITY, -INFINITY};
+    geom_fixture f;
+    geom_fixture_init(&f, 11, 5, 1);
+    float *vertices = calloc(11, 30 * sizeof *vertices);
+    uint32_t clamped = 0;
+    for (size_t i = 0; i < 11 * 15; i++) {
+        float right = f.points[i];
+        f.points[i] = wrong[i % 3];
+        CHECK(!ribbon_vertices(&f.layout->shape, f.points, 11, vertices, &clamped));
+        f.points[i] = right;
+    }
+    CHECK(ribbon_vertices(&f.layout->shape, f.points, 11, vertices, &clamped));
+    free(vertices);
+    geom_fixture_fini(&f);
+}
+
+/* The same bits from every compiler and for every width of the machine's registers. */
+TEST(geom_ribbons_are_these_bits)
+{
+    geom_fixture f;
+    geom_fixture_init(&f, 333, 17, 3);
+    float *vertices = calloc(333, 17 * 6 * sizeof *vertices);
+    uint32_t clamped = 0;
+    CHECK(ribbon_vertices(&f.layout->shape, f.points, 333, vertices, &clamped));
+    CHECK_U64(crc32c(vertices, 333 * 17 * 6 * sizeof *vertices), UINT32_C(0x57b30b7c));
+    free(vertices);
+    geom_fixture_fini(&f);
 }
 
 TEST(geom_fewer_strands_are_wider_and_none_is_under_four_steps)
