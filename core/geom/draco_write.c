@@ -41,7 +41,7 @@ awt_status draco_mesh_make(uint32_t vertices, const uint16_t *indices, uint32_t 
 {
     enum { ALPHABET = 2 * DRACO_MESH_REACH + 2 };
     const size_t count = 3 * (size_t)triangles, bound = symbols_bound(ALPHABET, count);
-    uint32_t counts[2 * ALPHABET];
+    uint32_t counts[4 * ALPHABET];
     uint16_t used[ALPHABET];
     rans_entry entries[ALPHABET];
     uint16_t *symbols = make_index_symbols(indices, count);
@@ -89,7 +89,7 @@ void draco_mesh_fini(draco_mesh *mesh)
 typedef struct writer_lane {
     uint16_t *symbols;    /* [quantise_room(most_vertices)] */
     uint16_t *tags;       /* [most_vertices] */
-    uint32_t *counts;     /* [2][2^bits] */
+    uint32_t *counts;     /* [4][2^bits] */
     uint16_t *used;       /* [2^bits] */
     rans_entry *entries;  /* [2^bits] */
     unsigned char *bytes; /* [symbols_bound] */
@@ -115,7 +115,7 @@ static bool make_lane(draco_writer *writer, uint32_t most_vertices, int bits, wr
     const size_t coordinates = 3 * (size_t)most_vertices;
     lane->symbols = hold(writer, quantise_room(most_vertices) * sizeof *lane->symbols);
     lane->tags = hold(writer, most_vertices * sizeof *lane->tags);
-    lane->counts = hold(writer, 2 * alphabet * sizeof *lane->counts);
+    lane->counts = hold(writer, 4 * alphabet * sizeof *lane->counts);
     lane->used = hold(writer, alphabet * sizeof *lane->used);
     lane->entries = hold(writer, alphabet * sizeof *lane->entries);
     lane->bytes = hold(writer, symbols_bound(alphabet, coordinates));
@@ -178,7 +178,9 @@ void draco_writer_run(draco_writer *writer, const draco_box *box, const quantise
         const draco_mesh *mesh = jobs[k].mesh;
         writer_lane *lane = &writer->lanes[k];
         if (mesh) {
-            jobs[k].found = quantise_differences(box, bounds, jobs[k].positions, mesh->vertices, lane->symbols);
+            jobs[k].found = jobs[k].numbers
+                                ? quantise_number_differences(box->bits, jobs[k].numbers, mesh->vertices, lane->symbols)
+                                : quantise_differences(box, bounds, jobs[k].positions, mesh->vertices, lane->symbols);
             runs[k] = (symbols_run){.scheme = writer->scheme,
                                     .symbols = lane->symbols,
                                     .count = 3 * (size_t)mesh->vertices,

@@ -32,8 +32,9 @@ void draco_mesh_fini(draco_mesh *mesh);
 
 /* One mesh to be written. */
 typedef struct draco_job {
-    const draco_mesh *mesh; /* NULL: a job that is not used */
-    const float *positions; /* [vertices][3] */
+    const draco_mesh *mesh;  /* NULL: a job that is not used */
+    const float *positions;  /* [vertices][3] */
+    const uint16_t *numbers; /* [vertices][3]: these in their stead, below 2^bits of the box */
     quantise_findings found;
     size_t size;         /* out: bytes of the mesh */
     double entropy_bits; /* out, where asked for: of the positions' symbols */

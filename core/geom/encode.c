@@ -6,9 +6,11 @@
 
 #include "base/error.h"
 #include "geom/buffer.h"
+#include "geom/delta_write.h"
 #include "geom/draco_shim.h"
 #include "geom/glb_template.h"
 #include "geom/layout.h"
+#include "geom/quantised.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,6 +20,7 @@ struct geom_scratch {
     draco_writer *writer;        /* NULL: stock encoder */
     float *vertices[RANS_LANES]; /* of the largest patch each; NULL where points are taken as they are */
     size_t held;
+    delta_scratch *delta; /* NULL: of no kind that has deltas */
 };
 
 /* Where encoding stands. */
@@ -52,6 +55,9 @@ awt_status geom_scratch_create(const geom_layout *layout, geom_scratch **out, aw
         scratch->held += size;
         status = scratch->vertices[k] ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
     }
+    if (status == AWT_OK && layout->kind == GEOM_STRANDS && !layout->stock) {
+        status = delta_scratch_create(layout, &scratch->delta, error);
+    }
     if (status != AWT_OK) {
         geom_scratch_destroy(scratch);
         return status;
@@ -64,6 +70,7 @@ void geom_scratch_destroy(geom_scratch *scratch)
 {
     if (scratch) {
         draco_writer_destroy(scratch->writer);
+        delta_scratch_destroy(scratch->delta);
         for (int k = 0; k < RANS_LANES; k++) {
             free(scratch->vertices[k]);
         }
@@ -73,7 +80,13 @@ void geom_scratch_destroy(geom_scratch *scratch)
 
 size_t geom_scratch_bytes(const geom_scratch *scratch)
 {
-    return scratch->held + (scratch->writer ? draco_writer_bytes(scratch->writer) : 0);
+    return scratch->held + (scratch->writer ? draco_writer_bytes(scratch->writer) : 0) +
+           (scratch->delta ? delta_scratch_bytes(scratch->delta) : 0);
+}
+
+delta_scratch *geom_scratch_delta(geom_scratch *scratch)
+{
+    return scratch->delta;
 }
 
 /* ---- points to vertices */
@@ -87,20 +100,6 @@ static awt_status refuse_points(const encoding *e, const geom_patch *patch)
 static const float *points_of(const encoding *e, const geom_patch *patch)
 {
     return e->def->points + (size_t)patch->first_strand * e->layout->points_per_strand * 3;
-}
-
-/* How many of a patch's points lie outside the bounds. */
-static uint32_t count_outside(const geom_layout *layout, const float *points, size_t count)
-{
-    uint32_t outside = 0;
-    for (size_t i = 0; i < count; i++, points += 3) {
-        bool out = false;
-        for (int k = 0; k < 3; k++) {
-            out = out || points[k] < layout->bounds.least[k] || points[k] > layout->bounds.greatest[k];
-        }
-        outside += out;
-    }
-    return outside;
 }
 
 /* ---- patches into the frame */
@@ -167,6 +166,12 @@ static awt_status add_job(encoding *e, uint32_t index, window *w)
 {
     const geom_layout *layout = e->layout;
     const geom_patch *patch = &layout->patches[index];
+    w->patches[w->count] = index;
+    if (e->def->quantised) {
+        const uint16_t *numbers = quantised_patch(e->def->quantised, layout, index);
+        w->jobs[w->count++] = (draco_job){.mesh = &layout->meshes[index], .numbers = numbers};
+        return AWT_OK;
+    }
     const float *points = points_of(e, patch);
     if (layout->kind == GEOM_RIBBON) {
         float *vertices = e->scratch->vertices[w->count];
@@ -175,8 +180,7 @@ static awt_status add_job(encoding *e, uint32_t index, window *w)
         }
         points = vertices;
     }
-    w->jobs[w->count] = (draco_job){.mesh = &layout->meshes[index], .positions = points};
-    w->patches[w->count++] = index;
+    w->jobs[w->count++] = (draco_job){.mesh = &layout->meshes[index], .positions = points};
     return AWT_OK;
 }
 
@@ -199,7 +203,7 @@ static awt_status check_jobs(encoding *e, const window *w)
             return refuse_points(e, &e->layout->patches[w->patches[k]]);
         }
         if (job->found.outside && e->layout->kind != GEOM_RIBBON) {
-            e->stats.clamped_points += count_outside(e->layout, job->positions, job->mesh->vertices);
+            e->stats.clamped_points += quantise_count_outside(&e->layout->bounds, job->positions, job->mesh->vertices);
         }
     }
     return AWT_OK;
@@ -252,7 +256,7 @@ static awt_status take_vertices(encoding *e, const geom_patch *patch, float *ver
         }
         vertices[i] = fminf(fmaxf(points[i], layout->bounds.least[i % 3]), layout->bounds.greatest[i % 3]);
     }
-    e->stats.clamped_points += count_outside(layout, points, count);
+    e->stats.clamped_points += quantise_count_outside(&layout->bounds, points, count);
     return AWT_OK;
 }
 
@@ -298,8 +302,7 @@ static awt_status encode_stock(encoding *e)
 
 /* ---- frames */
 
-/* glTF wants a rotation of length 1 to the last bits. */
-static awt_status take_head(const awt_pose *head, awt_pose *out, awt_error *error)
+awt_status layout_take_head(const awt_pose *head, awt_pose *out, awt_error *error)
 {
     double square = 0;
     for (int k = 0; k < 4; k++) {
@@ -322,10 +325,13 @@ awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const g
 {
     encoding e = {.layout = layout, .scratch = scratch, .def = def, .out = out, .error = error};
     awt_pose head;
-    awt_status status = take_head(&def->head, &head, error);
+    awt_status status = layout_take_head(&def->head, &head, error);
     if (status == AWT_OK && def->unchanged &&
         (layout->stock || !def->previous || !glb_template_made(&layout->frame, def->previous))) {
         status = error_set(error, AWT_BAD_VALUE, "the previous frame is none of this layout, or of the stock encoder");
+    }
+    if (status == AWT_OK && def->quantised && !quantised_fits(def->quantised, layout)) {
+        status = error_set(error, AWT_BAD_VALUE, "the whole numbers are none of this layout's");
     }
     if (status == AWT_OK) {
         status = glb_template_begin(&layout->frame, &head, def->time_us, out, error);

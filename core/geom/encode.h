@@ -59,11 +59,15 @@ void geom_scratch_destroy(geom_scratch *scratch);
 /* Bytes that it holds. */
 size_t geom_scratch_bytes(const geom_scratch *scratch);
 
+/* A frame of kind strands as whole numbers: what deltas are made between. */
+typedef struct geom_quantised geom_quantised;
+
 /* What a frame is made of. */
 typedef struct geom_frame_def {
-    const float *points; /* strand points [strands][points_per_strand][3], head frame */
-    awt_pose head;       /* becomes the glTF node's translation and rotation */
-    int64_t time_us;     /* goes into asset.extras */
+    const float *points;             /* strand points [strands][points_per_strand][3], head frame */
+    const geom_quantised *quantised; /* kind strands, own encoder: these, instead of points; else NULL */
+    awt_pose head;                   /* becomes the glTF node's translation and rotation */
+    int64_t time_us;                 /* goes into asset.extras */
 
     /* Patches that need not be encoded again, because their points are to the bit those that `previous` was made of: a
      * frame of the same layout, by our own encoder. The frame comes out as if all had been encoded. NULL: none. */
@@ -86,6 +90,44 @@ typedef struct geom_frame_stats {
  * layout), AWT_NO_MEMORY, AWT_LIMIT. */
 awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const geom_frame_def *def, geom_buffer *out,
                        geom_frame_stats *stats, awt_error *error);
+
+/* ---- deltas: what changed from one frame to another (proto/DELTAS.md) ---- */
+
+/* Memory for the whole numbers of one frame of a layout of kind strands. AWT_NO_MEMORY, AWT_BAD_VALUE. */
+awt_status geom_quantised_create(const geom_layout *layout, geom_quantised **out, awt_error *error);
+void geom_quantised_destroy(geom_quantised *quantised);
+/* Bytes that it holds. */
+size_t geom_quantised_bytes(const geom_quantised *quantised);
+/* CRC-32C of its numbers and their box. */
+uint32_t geom_quantised_checksum(const geom_quantised *quantised);
+
+typedef struct geom_quantise_def {
+    const float *points; /* [strands][points_per_strand][3], head frame */
+
+    /* Patches whose points are to the bit those that `previous` was made of. NULL: none. */
+    const bool *unchanged; /* [geom_layout_patches] */
+    const geom_quantised *previous;
+} geom_quantise_def;
+
+/* Fills `out`, which may be `previous`; adds to *clamped how many points of the other patches were set onto the box.
+ * AWT_BAD_VALUE (a point is not finite, `previous` is none of this layout); `out` is then of no frame. */
+awt_status geom_quantise(const geom_layout *layout, const geom_quantise_def *def, geom_quantised *out,
+                         uint32_t *clamped, awt_error *error);
+
+typedef struct geom_delta_def {
+    const geom_quantised *base, *now;
+    uint64_t base_sequence, sequence; /* the caller's names for them, which the receiver is told */
+    awt_pose head;
+    int64_t time_us;
+    bool measure; /* work out entropy_bits, which takes time */
+} geom_delta_def;
+
+/* Writes the frame `now` for who has `base`: a GLB with the extension AWT_strands_delta, in which patches that are the
+ * same in both are left out. `out` is replaced. Of `stats` vertices, encoded_patches and entropy_bits are those of the
+ * patches that are in it. AWT_BAD_VALUE (numbers of another layout or of no frame; the pose is not finite),
+ * AWT_NO_MEMORY, AWT_LIMIT. */
+awt_status geom_encode_delta(const geom_layout *layout, geom_scratch *scratch, const geom_delta_def *def,
+                             geom_buffer *out, geom_frame_stats *stats, awt_error *error);
 
 #ifdef __cplusplus
 }

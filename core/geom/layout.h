@@ -29,4 +29,7 @@ static inline uint32_t layout_patch_vertices(const geom_layout *layout, const ge
     return patch->strands * layout->points_per_strand * (layout->kind == GEOM_RIBBON ? 2 : 1);
 }
 
+/* Checks a pose; *out has a rotation of length 1 to the last bits, which glTF wants. AWT_BAD_VALUE. */
+awt_status layout_take_head(const awt_pose *head, awt_pose *out, awt_error *error);
+
 #endif

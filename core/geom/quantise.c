@@ -62,6 +62,19 @@ static void difference_block(int spare_bits, const int16_t *restrict numbers, ui
     }
 }
 
+uint32_t quantise_count_outside(const quantise_bounds *bounds, const float *positions, size_t count)
+{
+    uint32_t outside = 0;
+    for (size_t i = 0; i < count; i++, positions += 3) {
+        bool out = false;
+        for (int k = 0; k < 3; k++) {
+            out = out || positions[k] < bounds->least[k] || positions[k] > bounds->greatest[k];
+        }
+        outside += out;
+    }
+    return outside;
+}
+
 static bool all_finite(const float *positions, size_t coordinates)
 {
     bool finite = true;
@@ -95,18 +108,24 @@ static void take_rest(const float *positions, size_t first, size_t coordinates, 
     }
 }
 
+static block_findings found_nothing(void)
+{
+    block_findings found;
+    memset(&found, 0, sizeof found);
+    for (int k = 0; k < BLOCK; k++) {
+        found.least[k] = INT16_MAX;
+    }
+    return found;
+}
+
 quantise_findings quantise_differences(const draco_box *box, const quantise_bounds *bounds, const float *positions,
                                        size_t count, uint16_t *symbols)
 {
     const size_t coordinates = 3 * count, blocks = quantise_room(count) / BLOCK;
     block_constants constants;
-    block_findings found;
+    block_findings found = found_nothing();
     int16_t numbers[3 + CHUNK_BLOCKS * BLOCK] = {0};
     fill_constants(box, bounds, &constants);
-    memset(&found, 0, sizeof found);
-    for (int k = 0; k < BLOCK; k++) {
-        found.least[k] = INT16_MAX;
-    }
     for (size_t first = 0; first < blocks; first += CHUNK_BLOCKS) {
         const size_t here = blocks - first < CHUNK_BLOCKS ? blocks - first : CHUNK_BLOCKS;
         for (size_t b = 0; b < here; b++) {
@@ -124,6 +143,57 @@ quantise_findings quantise_differences(const draco_box *box, const quantise_boun
         memcpy(numbers, numbers + here * BLOCK, 3 * sizeof *numbers);
     }
     return sum_up(&found, positions, coordinates);
+}
+
+quantise_findings quantise_numbers(const draco_box *box, const quantise_bounds *bounds, const float *positions,
+                                   size_t count, uint16_t *numbers)
+{
+    const size_t coordinates = 3 * count, whole = coordinates / BLOCK * BLOCK;
+    block_constants constants;
+    block_findings found = found_nothing();
+    fill_constants(box, bounds, &constants);
+    for (size_t at = 0; at < whole; at += BLOCK) {
+        int16_t block[BLOCK];
+        quantise_block(&constants, positions + at, block, &found);
+        memcpy(numbers + at, block, sizeof block);
+    }
+    if (whole < coordinates) {
+        float rest[BLOCK];
+        int16_t block[BLOCK];
+        take_rest(positions, whole, coordinates, rest);
+        quantise_block(&constants, rest, block, &found);
+        memcpy(numbers + whole, block, (coordinates - whole) * sizeof *block);
+    }
+    return sum_up(&found, positions, coordinates);
+}
+
+/* Bounds of a block of numbers. */
+static void bound_block(const int16_t *restrict numbers, block_findings *restrict found)
+{
+    for (int i = 0; i < BLOCK; i++) {
+        found->least[i] = numbers[i] < found->least[i] ? numbers[i] : found->least[i];
+        found->greatest[i] = numbers[i] > found->greatest[i] ? numbers[i] : found->greatest[i];
+    }
+}
+
+quantise_findings quantise_number_differences(int bits, const uint16_t *numbers, size_t count, uint16_t *symbols)
+{
+    const size_t coordinates = 3 * count;
+    block_findings found = found_nothing();
+    for (size_t at = 0; at < coordinates; at += BLOCK) {
+        const size_t here = coordinates - at < BLOCK ? coordinates - at : BLOCK;
+        int16_t block[3 + BLOCK] = {0};
+        if (at > 0) {
+            memcpy(block, numbers + at - 3, 3 * sizeof *block);
+        }
+        memcpy(block + 3, numbers + at, here * sizeof *block);
+        for (size_t k = 3 + here; k < 3 + BLOCK; k++) { /* the last three again and again */
+            block[k] = block[k - 3];
+        }
+        bound_block(block + 3, &found);
+        difference_block(16 - bits, block, symbols + at);
+    }
+    return sum_up(&found, NULL, 0);
 }
 
 void quantise_sum_up(int bits, const uint16_t *symbols, size_t count, uint16_t *numbers)

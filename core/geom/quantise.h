@@ -27,6 +27,9 @@ typedef struct quantise_bounds {
     float least[3], greatest[3];
 } quantise_bounds;
 
+/* How many positions lie outside of them. */
+uint32_t quantise_count_outside(const quantise_bounds *bounds, const float *positions, size_t count);
+
 /* What was met on the way. */
 typedef struct quantise_findings {
     uint16_t least[3], greatest[3]; /* whole numbers along each axis */
@@ -37,6 +40,12 @@ typedef struct quantise_findings {
 /* Positions [count][3], count >= 1, become `symbols` [quantise_room(count)]. `bounds` lie within the box. */
 quantise_findings quantise_differences(const draco_box *box, const quantise_bounds *bounds, const float *positions,
                                        size_t count, uint16_t *symbols);
+
+/* The first half alone: positions [count][3] become `numbers` [count][3]. */
+quantise_findings quantise_numbers(const draco_box *box, const quantise_bounds *bounds, const float *positions,
+                                   size_t count, uint16_t *numbers);
+/* The second half: `numbers` [count][3], each below 2^bits, become `symbols` [quantise_room(count)]. */
+quantise_findings quantise_number_differences(int bits, const uint16_t *numbers, size_t count, uint16_t *symbols);
 
 /* The way back: `numbers` [count][3] from `symbols` [count][3], each below 2^bits. May be done in place. */
 void quantise_sum_up(int bits, const uint16_t *symbols, size_t count, uint16_t *numbers);

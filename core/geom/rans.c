@@ -186,16 +186,20 @@ static uint32_t take_state(const rans_source *source, size_t *size)
     return state < UINT32_C(1020) << source->precision ? state + (UINT32_C(4) << source->precision) : 0;
 }
 
-bool rans_decode(const rans_source *source, uint16_t *symbols, size_t count)
+/* Where decoding of one stream stands. */
+typedef struct rans_reader {
+    uint32_t state;
+    size_t left; /* bytes */
+} rans_reader;
+
+/* The last `count` symbols of a stream. */
+static bool take_rest(const rans_source *source, rans_reader reader, uint16_t *symbols, size_t count)
 {
     const uint32_t least = UINT32_C(4) << source->precision, mask = (UINT32_C(1) << source->precision) - 1;
     const int precision = source->precision;
     const unsigned char *bytes = source->bytes;
-    size_t left = source->size;
-    uint32_t state = take_state(source, &left);
-    if (state == 0) {
-        return false;
-    }
+    size_t left = reader.left;
+    uint32_t state = reader.state;
     for (size_t i = 0; i < count; i++) {
         while (state < least && left > 0) {
             state = state << 8 | bytes[--left];
@@ -210,4 +214,105 @@ bool rans_decode(const rans_source *source, uint16_t *symbols, size_t count)
         state = state << 8 | bytes[--left];
     }
     return state == least && left == 0;
+}
+
+bool rans_decode(const rans_source *source, uint16_t *symbols, size_t count)
+{
+    rans_reader reader = {.left = source->size};
+    reader.state = take_state(source, &reader.left);
+    return reader.state != 0 && take_rest(source, reader, symbols, count);
+}
+
+enum { WINDOW = 4, MOST_TAKEN = 3 /* bytes that one symbol takes, of a precision of 18 at most */ };
+
+/* One symbol, and the bytes that bring the state back above its least: as many as it is short of, without a branch.
+ * `at`, behind the next byte, has WINDOW of them before it. */
+static inline uint16_t take_symbol(const rans_source *source, uint32_t *state, const unsigned char **at)
+{
+    const int precision = source->precision;
+    const uint32_t slot = *state & ((UINT32_C(1) << precision) - 1);
+    const uint16_t symbol = source->slots[slot];
+    const rans_share *share = &source->shares[symbol];
+    const uint32_t next = (*state >> precision) * share->probability + slot - share->cumulative;
+    const int missing = precision + 3 - (32 - __builtin_clz(next)); /* bits */
+    const int taken = missing > 0 ? (missing + 7) & ~7 : 0;
+    const unsigned char *b = *at - WINDOW;
+    const uint64_t window = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    *state = (uint32_t)(((uint64_t)next << 32 | window) >> (32 - taken));
+    *at -= taken >> 3;
+    return symbol;
+}
+
+/* `count` symbols of each stream, from number `done` on, for which there are bytes enough. */
+static void take_four(const rans_target *targets, rans_reader *readers, size_t done, size_t count)
+{
+    const rans_source s0 = targets[0].source, s1 = targets[1].source, s2 = targets[2].source, s3 = targets[3].source;
+    const unsigned char *a0 = s0.bytes + readers[0].left, *a1 = s1.bytes + readers[1].left;
+    const unsigned char *a2 = s2.bytes + readers[2].left, *a3 = s3.bytes + readers[3].left;
+    uint32_t x0 = readers[0].state, x1 = readers[1].state, x2 = readers[2].state, x3 = readers[3].state;
+    for (size_t i = done; i < done + count; i++) {
+        targets[0].symbols[i] = take_symbol(&s0, &x0, &a0);
+        targets[1].symbols[i] = take_symbol(&s1, &x1, &a1);
+        targets[2].symbols[i] = take_symbol(&s2, &x2, &a2);
+        targets[3].symbols[i] = take_symbol(&s3, &x3, &a3);
+    }
+    readers[0] = (rans_reader){x0, (size_t)(a0 - s0.bytes)};
+    readers[1] = (rans_reader){x1, (size_t)(a1 - s1.bytes)};
+    readers[2] = (rans_reader){x2, (size_t)(a2 - s2.bytes)};
+    readers[3] = (rans_reader){x3, (size_t)(a3 - s3.bytes)};
+}
+
+/* How many symbols a stream can give without a look at where its bytes end. */
+static size_t sure_symbols(const rans_target *target, const rans_reader *reader, size_t done)
+{
+    const size_t bytes = reader->left < WINDOW ? 0 : (reader->left - WINDOW) / MOST_TAKEN;
+    const size_t symbols = target->count - done;
+    return bytes < symbols ? bytes : symbols;
+}
+
+/* The first stream that is still to be decoded, or RANS_LANES. */
+static int first_left(const bool left[RANS_LANES])
+{
+    int k = 0;
+    while (k < RANS_LANES && !left[k]) {
+        k++;
+    }
+    return k;
+}
+
+bool rans_decode_lanes(const rans_target targets[RANS_LANES])
+{
+    enum { WORTH_IT = 8 };
+    rans_target lanes[RANS_LANES]; /* one that is not used, or at its end, does what another does, to the same place */
+    rans_reader readers[RANS_LANES];
+    bool left[RANS_LANES], right = true;
+    size_t done = 0;
+    for (int k = 0; k < RANS_LANES; k++) {
+        lanes[k] = targets[k];
+        readers[k] = (rans_reader){.left = targets[k].source.size};
+        left[k] = targets[k].count > 0;
+        readers[k].state = left[k] ? take_state(&targets[k].source, &readers[k].left) : 0;
+        right = right && (!left[k] || readers[k].state != 0);
+    }
+    for (int any = first_left(left); right && any < RANS_LANES; any = first_left(left)) {
+        size_t sure = SIZE_MAX;
+        int least = any;
+        for (int k = 0; k < RANS_LANES; k++) {
+            lanes[k] = left[k] ? lanes[k] : lanes[any];
+            readers[k] = left[k] ? readers[k] : readers[any];
+            const size_t here = sure_symbols(&lanes[k], &readers[k], done);
+            least = here < sure ? k : least;
+            sure = here < sure ? here : sure;
+        }
+        if (sure >= WORTH_IT) {
+            take_four(lanes, readers, done, sure);
+            done += sure;
+        } else {
+            least = left[least] ? least : any;
+            right =
+                take_rest(&lanes[least].source, readers[least], lanes[least].symbols + done, lanes[least].count - done);
+            left[least] = false;
+        }
+    }
+    return right;
 }

@@ -63,4 +63,15 @@ typedef struct rans_source {
  * which most damaged ones do not: a weak checksum of about seven bits. */
 bool rans_decode(const rans_source *source, uint16_t *symbols, size_t count);
 
+/* One stream among RANS_LANES. */
+typedef struct rans_target {
+    rans_source source;
+    uint16_t *symbols; /* [count] */
+    size_t count;      /* 0: a stream that is not used */
+} rans_target;
+
+/* The same for RANS_LANES streams, each of a precision of 18 at most: no stream waits for its own last symbol. False:
+ * one of them is not what an encoder wrote. */
+bool rans_decode_lanes(const rans_target targets[RANS_LANES]);
+
 #endif

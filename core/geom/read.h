@@ -36,6 +36,19 @@ typedef struct geom_strands {
 awt_status geom_read_frame(const void *bytes, size_t size, geom_strands *out, awt_error *error);
 void geom_strands_fini(geom_strands *strands);
 
+/* The memory of one reader of deltas; one thread at a time. */
+typedef struct geom_delta_reader geom_delta_reader;
+awt_status geom_delta_reader_create(geom_delta_reader **out, awt_error *error);
+void geom_delta_reader_destroy(geom_delta_reader *reader);
+
+/* Reads a GLB that geom_encode_delta wrote, from a source that need not be trusted, for who has its base: a frame of
+ * kind strands, by geom_read_frame or by this, with the number that its sender named it by. `out`, which is not `base`,
+ * holds nothing or an earlier frame, whose memory is used again; it is written on success only, with the very positions
+ * that the frame would have brought whole: geom_strands_fini. AWT_BAD_VALUE (it is for another base), AWT_BAD_FORMAT,
+ * AWT_TRUNCATED, AWT_LIMIT, AWT_NO_MEMORY. */
+awt_status geom_read_delta(geom_delta_reader *reader, const void *bytes, size_t size, const geom_strands *base,
+                           uint64_t base_sequence, geom_strands *out, awt_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -40,7 +40,7 @@ typedef struct symbols_run {
     const uint16_t *symbols; /* [count], each below `alphabet` */
     size_t count;            /* 1 .. SYMBOLS_MAX_COUNT, of tagged ones a multiple of 3; 0: a run that is not used */
     uint32_t alphabet;       /* 32 .. SYMBOLS_MAX_ALPHABET */
-    uint32_t *counts;        /* [2][alphabet] */
+    uint32_t *counts;        /* [4][alphabet] */
     uint16_t *used;          /* [alphabet] */
     rans_entry *entries;     /* [alphabet] */
     uint16_t *tags;          /* tagged: [count / 3] */
@@ -64,5 +64,10 @@ typedef struct symbols_tables {
  * moves behind it. False: there is none, or one that no encoder wrote; `symbols` is half written then. */
 bool symbols_read(const unsigned char **at, const unsigned char *end, uint32_t alphabet, symbols_tables *tables,
                   uint16_t *symbols, size_t count);
+
+/* All of a run in the raw scheme but its data, which become *out for rans_decode_lanes; *at moves behind them. `tables`
+ * is in use until then. False: there is none. */
+bool symbols_open(const unsigned char **at, const unsigned char *end, uint32_t alphabet, symbols_tables *tables,
+                  rans_source *out);
 
 #endif

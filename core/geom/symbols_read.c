@@ -58,18 +58,26 @@ static bool take_table(const unsigned char **at, const unsigned char *end, uint3
     return sum == whole;
 }
 
-/* Table and data of `count` symbols. */
-static bool take_coded(const unsigned char **at, const unsigned char *end, uint32_t alphabet, int precision,
-                       symbols_tables *tables, uint16_t *symbols, size_t count)
+/* Table, and where the data are. */
+static bool open_coded(const unsigned char **at, const unsigned char *end, uint32_t alphabet, int precision,
+                       symbols_tables *tables, rans_source *out)
 {
     uint32_t size;
     if (!take_table(at, end, alphabet, precision, tables) || !varint_take(at, end, &size) ||
         size > (size_t)(end - *at)) {
         return false;
     }
-    const rans_source source = {*at, size, precision, tables->slots, tables->shares};
+    *out = (rans_source){*at, size, precision, tables->slots, tables->shares};
     *at += size;
-    return rans_decode(&source, symbols, count);
+    return true;
+}
+
+/* Table and data of `count` symbols. */
+static bool take_coded(const unsigned char **at, const unsigned char *end, uint32_t alphabet, int precision,
+                       symbols_tables *tables, uint16_t *symbols, size_t count)
+{
+    rans_source source;
+    return open_coded(at, end, alphabet, precision, tables, &source) && rans_decode(&source, symbols, count);
 }
 
 /* Up to 8 bytes from *at on, the least first. */
@@ -119,6 +127,18 @@ static bool take_bits(const unsigned char **at, const unsigned char *end, uint32
     return all < alphabet; /* a power of two, as it is for coordinates */
 }
 
+bool symbols_open(const unsigned char **at, const unsigned char *end, uint32_t alphabet, symbols_tables *tables,
+                  rans_source *out)
+{
+    if (end - *at < 2 || **at != SYMBOLS_RAW || (*at)[1] < 1 || (*at)[1] > GREATEST_LENGTH) {
+        return false;
+    }
+    const int precision = 3 * (*at)[1] / 2;
+    *at += 2;
+    return open_coded(at, end, alphabet, precision < RANS_LEAST_PRECISION ? RANS_LEAST_PRECISION : precision, tables,
+                      out);
+}
+
 bool symbols_read(const unsigned char **at, const unsigned char *end, uint32_t alphabet, symbols_tables *tables,
                   uint16_t *symbols, size_t count)
 {
@@ -128,11 +148,6 @@ bool symbols_read(const unsigned char **at, const unsigned char *end, uint32_t a
         return take_coded(at, end, GREATEST_TAG + 1, RANS_LEAST_PRECISION, tables, tags, count / 3) &&
                take_bits(at, end, alphabet, symbols, count / 3);
     }
-    if (end - *at < 2 || **at != SYMBOLS_RAW || (*at)[1] < 1 || (*at)[1] > GREATEST_LENGTH) {
-        return false;
-    }
-    const int precision = 3 * (*at)[1] / 2;
-    *at += 2;
-    return take_coded(at, end, alphabet, precision < RANS_LEAST_PRECISION ? RANS_LEAST_PRECISION : precision, tables,
-                      symbols, count);
+    rans_source source;
+    return symbols_open(at, end, alphabet, tables, &source) && rans_decode(&source, symbols, count);
 }

@@ -1,9 +1,11 @@
-/* test_allocation.c: stepping takes no memory and gives none back. The build has the linker pass every call of the heap
- * that the library makes through here (Makefile: WRAP), whatever heap is behind it, the sanitizers' own included. */
+/* test_allocation.c: stepping and encoding take no memory and give none back. The build has the linker pass every call
+ * of the heap that the library makes through here (Makefile: WRAP), whatever heap is behind it, the sanitizers' own
+ * included. */
 #include "check.h"
 #include "invariant_fixture.h"
 
 #include "base/assert.h"
+#include "unit/delta_fixture.h"
 
 #include <stdlib.h>
 
@@ -117,4 +119,29 @@ TEST(stepping_allocates_nothing)
 {
     check_stepping("long");
     check_stepping("short-curly");
+}
+
+/* Whole numbers, whole frames of them, deltas: once their buffer has grown. */
+TEST(encoding_deltas_allocates_nothing)
+{
+    delta_fixture f;
+    delta_fixture_init(&f, 3000, 16, 10, 12);
+    geom_frame_def whole = {.quantised = f.now, .head = geom_fixture_head};
+    geom_delta_def delta = {.base = f.base, .now = f.now, .head = geom_fixture_head};
+    geom_quantise_def quantise = {.points = f.hair.points};
+    uint32_t clamped = 0;
+    delta_fixture_move(&f, 0.1f, NULL);
+    delta_fixture_encode(&f, NULL);
+    for (int round = 0; round < 2; round++) {
+        count_begin();
+        whole.quantised = delta.now = f.now;
+        delta.base = f.base;
+        geom_quantise(f.hair.layout, &quantise, f.now, &clamped, NULL);
+        geom_encode(f.hair.layout, f.hair.scratch, &whole, &f.whole, NULL, NULL);
+        awt_status status = geom_encode_delta(f.hair.layout, f.hair.scratch, &delta, &f.delta, NULL, NULL);
+        unsigned counted = count_end();
+        CHECK(round == 0 ? counted > 0 : counted == 0); /* f.whole has grown */
+        CHECK_INT(status, AWT_OK);
+    }
+    delta_fixture_fini(&f);
 }

@@ -13,7 +13,7 @@ enum { MOST = 30000, ALPHABET = 1 << 14 };
 /* All the memory of one run. */
 typedef struct room {
     uint16_t symbols[MOST], tags[MOST / 3], used[ALPHABET];
-    uint32_t counts[2 * ALPHABET];
+    uint32_t counts[4 * ALPHABET];
     rans_entry entries[ALPHABET];
     unsigned char bytes[ALPHABET * 3 + MOST * 3 + 64], bits[MOST * 2 + 8];
 } room;
