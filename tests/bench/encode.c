@@ -21,30 +21,43 @@ static double mbit_s(const encode_row *row)
 
 /* ---- the table ---- */
 
+/* "strands" or, of deltas, "strands-1": the base's age. */
+static const char *row_name(const encode_row *row, char name[16])
+{
+    if (row->base_age > 0) {
+        snprintf(name, 16, "%s-%u", KINDS[row->kind], row->base_age % 10);
+    } else {
+        snprintf(name, 16, "%s", KINDS[row->kind]);
+    }
+    return name;
+}
+
 static void table(FILE *text, const encode_plan *plan, const encode_row rows[ENCODE_ROWS])
 {
     fprintf(text, "%s, %s: %u frames from %.2f s on, one core, medians\n\n",
             plan->groom_file ? plan->groom_file : plan->style->name, plan->clip.description, plan->frames,
             (double)plan->begin_us * 1e-6);
     fputs(
-        "                           |        encode, ms       |       | million  |  bytes a point  | entropy | error |"
+        "                            |        encode, ms       |       | million  |  bytes a point  | entropy | error |"
         "  decode, ms   | Mbit/s\n"
-        "kind     bits moving  pat. |   ours  stock vertices | ratio | points/s |   ours    stock | bits/pt |    mm |"
+        "kind      bits moving  pat. |   ours  stock vertices | ratio | points/s |   ours    stock | bits/pt |    mm |"
         "   ours  stock | at 60 Hz\n",
         text);
     for (int i = 0; i < ENCODE_ROWS; i++) {
         const encode_row *r = &rows[i];
+        char name[16];
         fprintf(
             text,
-            "%-8s %4d %-7s %4u | %6.3f %6.2f %8.3f | %4.1fx | %8.1f | %6.3f   %6.3f | %7.2f | %5.3f | %6.2f %6.2f | "
+            "%-9s %4d %-7s %4u | %6.3f %6.2f %8.3f | %4.1fx | %8.1f | %6.3f   %6.3f | %7.2f | %5.3f | %6.2f %6.2f | "
             "%6.1f\n",
-            KINDS[r->kind], r->quantisation_bits, MOVINGS[r->moving], r->patches, r->encode_ms, r->stock_encode_ms,
+            row_name(r, name), r->quantisation_bits, MOVINGS[r->moving], r->patches, r->encode_ms, r->stock_encode_ms,
             r->vertices_ms, r->stock_encode_ms / r->encode_ms, (double)r->points / r->encode_ms * 1e-3,
             r->bytes_per_point, r->stock_bytes_per_point, r->entropy_bits_per_point, r->max_error_mm, r->decode_ms,
             r->stock_decode_ms, mbit_s(r));
     }
-    fprintf(text, "\nmemory of an encoder: ribbon %.1f MiB, strands %.1f MiB\n",
-            (double)rows[0].scratch_bytes / 1048576, (double)rows[ENCODE_MOVINGS].scratch_bytes / 1048576);
+    fputs("\nstrands-1, strands-3: deltas to the frame before, and to the third one before\n", text);
+    fprintf(text, "memory of an encoder: ribbon %.1f MiB, strands %.1f MiB\n", (double)rows[0].scratch_bytes / 1048576,
+            (double)rows[ENCODE_MOVINGS].scratch_bytes / 1048576);
 }
 
 /* ---- the same as JSON ---- */
@@ -54,7 +67,8 @@ static void json_row(jsonout *j, const encode_row *r)
     jsonout_object(j, NULL);
     jsonout_text(j, "kind", KINDS[r->kind]);
     jsonout_text(j, "level", "full");
-    jsonout_bool(j, "delta", false);
+    jsonout_bool(j, "delta", r->base_age > 0);
+    jsonout_unsigned(j, "base_age_frames", r->base_age);
     jsonout_integer(j, "quantisation_bits", r->quantisation_bits);
     jsonout_text(j, "moving", MOVINGS[r->moving]);
     jsonout_unsigned(j, "points", r->points);

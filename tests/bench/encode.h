@@ -6,6 +6,8 @@
 #include "bench/bench.h"
 #include "geom/encode.h"
 
+#include <time.h>
+
 enum { ENCODE_MAX_FRAMES = 1000, ENCODE_FRAME_RATE = 60 };
 
 /* Which hair, and how it moves. */
@@ -28,19 +30,32 @@ typedef enum encode_moving { ENCODE_ALL, ENCODE_QUARTER, ENCODE_NONE, ENCODE_MOV
 typedef struct encode_row {
     geom_kind kind;
     encode_moving moving;
+    uint32_t base_age; /* of a delta: frames from its base to it; 0: a whole frame */
     int quantisation_bits;
     uint32_t patches;
-    size_t points;                     /* strand points of a frame */
-    double encode_ms, stock_encode_ms; /* the stock encoder knows no patches that are kept */
-    double vertices_ms;                /* the part of both that makes ribbons of strands */
-    double bytes_per_point, stock_bytes_per_point;
-    double entropy_bits_per_point;     /* of the differences, without connectivity, tables and JSON */
-    double max_error_mm;               /* between a point that went in and the one that comes out */
-    double decode_ms, stock_decode_ms; /* our reader and stock libdraco on our frame's Draco data */
-    size_t scratch_bytes;              /* that our encoder holds */
+    size_t points;                                 /* strand points of a frame */
+    double encode_ms, stock_encode_ms;             /* the stock encoder knows no patches that are kept */
+    double vertices_ms;                            /* the part of both that makes ribbons of strands */
+    double bytes_per_point, stock_bytes_per_point; /* of a delta's stock: the same numbers, coded by libdraco */
+    double entropy_bits_per_point;                 /* of the differences, without connectivity, tables and JSON */
+    double max_error_mm;                           /* between a point that went in and the one that comes out */
+    double decode_ms, stock_decode_ms;             /* our reader and stock libdraco on our frame's Draco data */
+    size_t scratch_bytes;                          /* that our encoder holds */
 } encode_row;
 
-enum { ENCODE_ROWS = 2 * ENCODE_MOVINGS };
+enum {
+    ENCODE_BASES = 2, /* of deltas: the frame before, and the third one before */
+    ENCODE_WHOLE_ROWS = 2 * ENCODE_MOVINGS,
+    ENCODE_DELTA_ROWS = ENCODE_BASES * ENCODE_MOVINGS,
+    ENCODE_ROWS = ENCODE_WHOLE_ROWS + ENCODE_DELTA_ROWS
+};
+
+static inline double bench_now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
 
 /* Runs the plan. False: why has been said. */
 bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS]);

@@ -1,6 +1,7 @@
 /* encode_run.c: hair goes through a clip; every few frames each kind is encoded and decoded by us and by libdraco, one
  * after the other, so that whatever else the machine does meets both. */
 #include "bench/encode.h"
+#include "bench/encode_delta.h"
 
 #include "base/error.h"
 #include "files.h"
@@ -15,16 +16,8 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { MOST_FILE = 1 << 30, REPEATS = 3 };
-
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 /* ---- the hair */
 
@@ -186,9 +179,9 @@ static awt_status time_encode(const geom_layout *layout, geom_scratch *scratch, 
     awt_status status = AWT_OK;
     *ms = INFINITY;
     for (int n = 0; n < repeats && status == AWT_OK; n++) {
-        double begin = now_ms();
+        double begin = bench_now_ms();
         status = geom_encode(layout, scratch, def, out, stats, error);
-        *ms = fmin(*ms, now_ms() - begin);
+        *ms = fmin(*ms, bench_now_ms() - begin);
     }
     return status;
 }
@@ -216,9 +209,9 @@ static awt_status time_own(const hair *h, subject *s, geom_frame_def *def, awt_e
     s->bytes += (double)s->frame.size;
     if (s->layout->kind == GEOM_RIBBON) {
         uint32_t clamped = 0;
-        double begin = now_ms();
+        double begin = bench_now_ms();
         ribbon_vertices(&s->layout->shape, h->points, h->info.strand_count, s->vertices, &clamped);
-        s->vertices_ms[s->done] = now_ms() - begin;
+        s->vertices_ms[s->done] = bench_now_ms() - begin;
     }
     return status;
 }
@@ -229,7 +222,7 @@ static awt_status time_decode(subject *s, bool stock, double *ms, awt_error *err
     glb_frame glb;
     const size_t a_strand = (size_t)s->layout->points_per_strand * topology_vertices_a_point(s->layout->kind) * 3;
     awt_status status = glb_read(s->frame.bytes, s->frame.size, &glb, error);
-    double begin = now_ms();
+    double begin = bench_now_ms();
     for (uint32_t i = 0; status == AWT_OK && i < glb.patch_count; i++) {
         const glb_patch *patch = &glb.patches[i];
         float *out = s->vertices + patch->first_strand * a_strand;
@@ -241,7 +234,7 @@ static awt_status time_decode(subject *s, bool stock, double *ms, awt_error *err
             status = error_set(error, AWT_BAD_FORMAT, "our reader refuses what our encoder wrote");
         }
     }
-    *ms = now_ms() - begin;
+    *ms = bench_now_ms() - begin;
     glb_frame_fini(&glb);
     return status;
 }
@@ -318,7 +311,8 @@ static void fill_rows(const hair *h, subject *s, encode_row *rows)
     }
 }
 
-static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects[2], awt_error *error)
+static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects[2], delta_subject *deltas,
+                              awt_error *error)
 {
     progress bar = progress_begin(stderr, "encoding", false);
     const uint32_t frames = plan->frames * plan->stride;
@@ -326,12 +320,15 @@ static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects
     for (uint32_t n = 1; n <= frames && status == AWT_OK; n++) {
         const int64_t time_us = plan->begin_us + (int64_t)n * 1000000 / ENCODE_FRAME_RATE;
         status = move_hair(plan, h, time_us, error);
-        if (status == AWT_OK && n % plan->stride == 0) {
+        const bool measured = n % plan->stride == 0;
+        if (status == AWT_OK) {
+            const awt_pose head = awt_forest_head(h->forest);
             awt_forest_guides(h->forest, h->centres, h->frames);
             awt_groom_strands(h->groom, h->centres, h->frames, h->scratch, h->points);
-            for (int kind = 0; kind < 2 && status == AWT_OK; kind++) {
-                status = measure_frame(h, &subjects[kind], time_us, error);
-            }
+            status = delta_subject_frame(deltas, h->points, &head, time_us, measured, error);
+        }
+        for (int kind = 0; kind < 2 && measured && status == AWT_OK; kind++) {
+            status = measure_frame(h, &subjects[kind], time_us, error);
         }
         progress_show(&bar, (double)n / frames, "");
     }
@@ -343,14 +340,22 @@ bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS])
 {
     hair h = {0};
     subject subjects[2] = {{0}};
+    delta_subject *deltas = NULL;
     awt_error error = {0};
     awt_status status = make_hair(plan, &h, &error);
     for (int kind = 0; kind < 2 && status == AWT_OK; kind++) {
         status = make_subject(&h, kind ? GEOM_STRANDS : GEOM_RIBBON, plan->frames, &subjects[kind], &error);
     }
     if (status == AWT_OK) {
-        status = measure_all(plan, &h, subjects, &error);
+        status = delta_subject_create(h.groom, plan->frames, &deltas, &error);
     }
+    if (status == AWT_OK) {
+        status = measure_all(plan, &h, subjects, deltas, &error);
+    }
+    if (status == AWT_OK) {
+        delta_subject_rows(deltas, rows + ENCODE_WHOLE_ROWS);
+    }
+    delta_subject_destroy(deltas);
     for (int kind = 0; kind < 2; kind++) {
         if (status == AWT_OK) {
             fill_rows(&h, &subjects[kind], rows + kind * ENCODE_MOVINGS);

@@ -100,6 +100,22 @@ static void check_row(const json_document *json, uint32_t row, const char *kind,
     CHECK(number_at(json, row, "decode_ms") > 0 && number_at(json, row, "stock_decode_ms") > 0);
 }
 
+/* One row of deltas. */
+static void check_delta_row(const json_document *json, uint32_t row, int age, const char *moving)
+{
+    const uint32_t delta = json_member(json, row, "delta");
+    CHECK(delta != JSON_NONE && json->text[json->tokens[delta].begin] == 't');
+    CHECK(json_is_text(json, json_member(json, row, "kind"), "strands"));
+    CHECK(json_is_text(json, json_member(json, row, "moving"), moving));
+    CHECK_NEAR(number_at(json, row, "base_age_frames"), age, 0);
+    double bytes = number_at(json, row, "bytes_per_point"), entropy = number_at(json, row, "entropy_bits_per_point");
+    bool none = strcmp(moving, "none") == 0;
+    CHECK(none ? bytes < 0.05 && entropy == 0 : bytes < 1.1 && entropy > 0.1 && entropy < 8 * bytes);
+    CHECK(bytes < 1.03 * number_at(json, row, "stock_bytes_per_point") + 0.06);
+    CHECK(number_at(json, row, "max_error_mm") < 0.5);
+    CHECK(number_at(json, row, "encode_ms") > 0 && number_at(json, row, "decode_ms") > 0);
+}
+
 TEST(bench_writes_what_frames_cost_as_json)
 {
     char path[300], arguments[400];
@@ -107,7 +123,7 @@ TEST(bench_writes_what_frames_cost_as_json)
         return;
     }
     snprintf(path, sizeof path, "%s/bench-encode.json", check_build_directory());
-    snprintf(arguments, sizeof arguments, "--strands 1000 --frames 2 --stride 3 --json '%s'", path);
+    snprintf(arguments, sizeof arguments, "--strands 1000 --frames 2 --stride 5 --json '%s'", path);
     CHECK_INT(run_bench("encode", arguments), 0);
     size_t size;
     char *text = (char *)check_read_file(path, &size);
@@ -116,9 +132,13 @@ TEST(bench_writes_what_frames_cost_as_json)
     if (text && json_read(text, size, &json, NULL) == AWT_OK) {
         static const char *const movings[] = {"all", "quarter", "none"};
         uint32_t rows = json_member(&json, 0, "rows"), row = rows + 1;
-        CHECK_INT(json_items(&json, rows), 6);
-        for (int i = 0; i < 6 && json_items(&json, rows) == 6; i++, row = json.tokens[row].after) {
-            check_row(&json, row, i < 3 ? "ribbon" : "strands", movings[i % 3], i < 3 ? 14 : 12);
+        CHECK_INT(json_items(&json, rows), 12);
+        for (int i = 0; i < 12 && json_items(&json, rows) == 12; i++, row = json.tokens[row].after) {
+            if (i < 6) {
+                check_row(&json, row, i < 3 ? "ribbon" : "strands", movings[i % 3], i < 3 ? 14 : 12);
+            } else {
+                check_delta_row(&json, row, i < 9 ? 1 : 3, movings[i % 3]);
+            }
         }
     } else {
         CHECK(json.count > 0); /* it is no JSON */
