@@ -46,7 +46,7 @@ LIBCLIENT := $(B)/libawtclient.a
 LIBSERVER := $(B)/libawtserver.a
 PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-bench
 
-.PHONY: all help demo test soak bench format lint install clean deps deps-test programs tests-binary
+.PHONY: all help demo test soak bench format lint install clean deps deps-test deps-soak programs tests-binary
 .DELETE_ON_ERROR:
 
 all: programs $(B)/rooms.ok
@@ -62,7 +62,7 @@ help:
 	@echo 'make demo      installs what is missing, builds, plays a leaning head for 10 s, leaves GLB files in build/demo'
 	@echo '               GROOM=FILE MOTION=FILE JOINT=NAME SCALE=S UP=y|z HEAD=x,y,z,r: your own hair and motion'
 	@echo 'make test      installs what is missing, builds, runs every test (DEPS=never: installs nothing)'
-	@echo 'make soak      the long tests'
+	@echo 'make soak      the long tests (about half an hour on two cores): minutes of violent motion, TSan, same bits, fuzzing'
 	@echo 'make all       builds; config=debug|release|asan|tsan|coverage|fuzz, native=1, CC=clang CXX=clang++, V=1'
 	@echo 'make bench format lint install clean'
 
@@ -119,6 +119,8 @@ deps:
 	@DEPS='$(DEPS)' sh tests/deps.sh run
 deps-test:
 	@DEPS='$(DEPS)' sh tests/deps.sh test
+deps-soak:
+	@DEPS='$(DEPS)' sh tests/deps.sh soak
 
 demo: deps
 	@$(MAKE) --no-print-directory programs config=release
@@ -127,7 +129,7 @@ demo: deps
 test: deps-test
 	@sh tests/run.sh
 
-soak: deps-test
+soak: deps-soak
 	@sh tests/soak.sh
 
 bench: programs
