@@ -46,7 +46,7 @@ LIBCLIENT := $(B)/libawtclient.a
 LIBSERVER := $(B)/libawtserver.a
 PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-bench
 
-.PHONY: all help demo test soak bench format lint install clean deps deps-test deps-soak programs tests-binary
+.PHONY: all help demo test soak sheets bench format lint install clean deps deps-test deps-soak programs tests-binary
 .DELETE_ON_ERROR:
 
 all: programs $(B)/rooms.ok
@@ -63,6 +63,7 @@ help:
 	@echo '               GROOM=FILE MOTION=FILE JOINT=NAME SCALE=S UP=y|z HEAD=x,y,z,r: your own hair and motion'
 	@echo 'make test      installs what is missing, builds, runs every test (DEPS=never: installs nothing)'
 	@echo 'make soak      the long tests (about half an hour on two cores): minutes of violent motion, TSan, same bits, fuzzing'
+	@echo 'make sheets    the pictures of README.md: every style (and real groom that is there) through the lean'
 	@echo 'make all       builds; config=debug|release|asan|tsan|coverage|fuzz, native=1, CC=clang CXX=clang++, V=1'
 	@echo 'make bench format lint install clean'
 
@@ -131,6 +132,10 @@ test: deps-test
 
 soak: deps-soak
 	@sh tests/soak.sh
+
+sheets: deps-test
+	@$(MAKE) --no-print-directory programs config=release
+	@sh tests/render/sheets.sh build/release
 
 bench: programs
 	$(B)/awt-bench
