@@ -9,9 +9,10 @@ FLAGS_debug := -O0 -g
 FLAGS_release := -O2 -g
 FLAGS_asan := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 FLAGS_tsan := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
+FLAGS_fuzz := -O1 -g -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=all -fno-omit-frame-pointer
 FLAGS_coverage := -O0 -g --coverage
 FLAGS := $(FLAGS_$(config)) $(if $(native),-O3 -march=native)
-$(if $(FLAGS),,$(error config is one of debug release asan tsan coverage, not "$(config)"))
+$(if $(FLAGS),,$(error config is one of debug release asan tsan coverage fuzz, not "$(config)"))
 
 # Same bits everywhere: no contraction of a*b+c, no reassociation. (Without errno a square root is one instruction.)
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
@@ -33,8 +34,9 @@ SRC_clients := $(filter-out clients/awtctl%,$(wildcard clients/*.c clients/*/*.c
 SRC_awtctl := $(wildcard clients/awtctl*.c)
 SRC_unit := tests/main.c $(wildcard tests/unit/*.c tests/e2e/*.c)
 SRC_bench := $(wildcard tests/bench/*.c)
+SRC_fuzz := $(wildcard tests/fuzz/*.c)
 HEADERS := $(wildcard $(foreach r,core proto server clients tests,$(r)/*.h $(r)/*/*.h))
-SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_unit) $(SRC_bench)
+SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_unit) $(SRC_bench) $(SRC_fuzz)
 
 , := ,
 objects = $(patsubst %,$(B)/obj/%.o,$(1))
@@ -44,7 +46,7 @@ LIBCLIENT := $(B)/libawtclient.a
 LIBSERVER := $(B)/libawtserver.a
 PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-bench
 
-.PHONY: all help demo test soak bench format lint install clean deps deps-test programs tests-binary
+.PHONY: all help demo test soak sheets bench format lint install clean deps deps-test deps-soak programs tests-binary
 .DELETE_ON_ERROR:
 
 all: programs $(B)/rooms.ok
@@ -60,8 +62,9 @@ help:
 	@echo 'make demo      installs what is missing, builds, plays a leaning head for 10 s, leaves GLB files in build/demo'
 	@echo '               GROOM=FILE MOTION=FILE JOINT=NAME SCALE=S UP=y|z HEAD=x,y,z,r: your own hair and motion'
 	@echo 'make test      installs what is missing, builds, runs every test (DEPS=never: installs nothing)'
-	@echo 'make soak      the long tests'
-	@echo 'make all       builds; config=debug|release|asan|tsan|coverage, native=1, CC=clang CXX=clang++, V=1'
+	@echo 'make soak      the long tests (about half an hour on two cores): minutes of violent motion, TSan, same bits, fuzzing'
+	@echo 'make sheets    the pictures of README.md: every style (and real groom that is there) through the lean'
+	@echo 'make all       builds; config=debug|release|asan|tsan|coverage|fuzz, native=1, CC=clang CXX=clang++, V=1'
 	@echo 'make bench format lint install clean'
 
 $(B)/awtd: $(B)/obj/server/main.c.o $(LIBSERVER) $(LIBAWT) $(LIBPROTO)
@@ -70,7 +73,10 @@ $(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/tests: $(call objects,$(SRC_unit)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 # The tests count what the heap is asked for (tests/unit/test_allocation.c): the linker leads these calls there.
 $(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_alloc posix_memalign free)
-$(PROGRAMS) $(B)/tests:
+# What reads bytes from outside, under libFuzzer: config=fuzz CC=clang CXX=clang++ (tests/soak.sh runs it).
+$(B)/fuzz: $(call objects,$(SRC_fuzz) tests/unit/proto_fill.c) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(B)/fuzz: WRAP := -fsanitize=fuzzer
+$(PROGRAMS) $(B)/tests $(B)/fuzz:
 	@echo "  LD   $@"
 	$(Q)$(CXX) $(FLAGS) $(WRAP) $(LDFLAGS) -o $@ $^ $(LDLIBS_ALL)
 
@@ -114,6 +120,8 @@ deps:
 	@DEPS='$(DEPS)' sh tests/deps.sh run
 deps-test:
 	@DEPS='$(DEPS)' sh tests/deps.sh test
+deps-soak:
+	@DEPS='$(DEPS)' sh tests/deps.sh soak
 
 demo: deps
 	@$(MAKE) --no-print-directory programs config=release
@@ -122,8 +130,12 @@ demo: deps
 test: deps-test
 	@sh tests/run.sh
 
-soak: deps-test
+soak: deps-soak
 	@sh tests/soak.sh
+
+sheets: deps-test
+	@$(MAKE) --no-print-directory programs config=release
+	@sh tests/render/sheets.sh build/release
 
 bench: programs
 	$(B)/awt-bench

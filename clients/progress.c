@@ -14,14 +14,15 @@ progress progress_begin(FILE *file, const char *label, bool silent)
     return p;
 }
 
-/* Minutes and seconds still to go, going by what the share done has taken; empty before that says anything. */
-static void progress_left(const progress *p, double share, char *text, size_t size)
+/* Minutes and seconds still to go, going by what the share done has taken; empty before that says anything. `before`
+ * stands between them and what was said already. */
+static void progress_left(const progress *p, double share, const char *before, char *text, size_t size)
 {
     double taken_s = (double)(socket_now_us() - p->began_us) * 1e-6;
     text[0] = '\0';
     if (share > 0.001 && taken_s > 0.5) {
         int left_s = (int)(taken_s * (1 - share) / share + 0.5);
-        snprintf(text, size, ", %d:%02d left", left_s / 60, left_s % 60);
+        snprintf(text, size, "%s%d:%02d left", before, left_s / 60, left_s % 60);
     }
 }
 
@@ -34,9 +35,9 @@ void progress_show(progress *p, double share, const char *text)
     }
     p->shown_us = now_us;
     char left[32];
-    progress_left(p, share, left, sizeof left);
+    progress_left(p, share, text[0] || !p->terminal ? ", " : "", left, sizeof left);
     if (!p->terminal) {
-        fprintf(p->file, "%s: %3.0f %%, %s%s\n", p->label, share * 100, text, left);
+        fprintf(p->file, "%s: %3.0f %%%s%s%s\n", p->label, share * 100, text[0] ? ", " : "", text, left);
         return;
     }
     char bar[PROGRESS_WIDTH + 1];

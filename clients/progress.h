@@ -15,7 +15,8 @@ typedef struct progress {
 
 /* `silent`: nothing is ever shown. `label` must outlive the progress. */
 progress progress_begin(FILE *file, const char *label, bool silent);
-/* Shows share (0 to 1) and `text`, if it is time to: about 15 times a second on a terminal, every 2 s elsewhere. */
+/* Shows share (0 to 1) and `text` (may be empty), if it is time to: about 15 times a second on a terminal, every 2 s
+ * elsewhere. */
 void progress_show(progress *p, double share, const char *text);
 /* Takes the bar off the terminal so that other lines can be written. */
 void progress_hide(progress *p);

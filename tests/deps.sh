@@ -1,6 +1,6 @@
 #!/bin/sh
-# deps.sh run|test: installs the Debian packages that awtd (run) and its tests (test) need, where a command or header
-# that they bring is missing. DEPS=never installs nothing. Prints first what it will install.
+# deps.sh run|test|soak: installs the Debian packages that awtd (run), its tests (test) and its long tests (soak) need,
+# where a command or header that they bring is missing. DEPS=never installs nothing. Prints first what it will install.
 set -eu
 cd "$(dirname "$0")/.."
 wanted=""
@@ -24,12 +24,17 @@ if command -v c++ >/dev/null 2>&1; then
 else
     wanted="$wanted libdraco-dev libtinygltf-dev"
 fi
-if [ "$1" = test ]; then
+if [ "$1" != run ]; then
     want clang has clang
     want libclang-rt-dev has_clang_runtime
     want nodejs has node
     want npm has npm
     want python3 has python3
+fi
+if [ "$1" = soak ]; then
+    want gcc-aarch64-linux-gnu has aarch64-linux-gnu-gcc
+    want libc6-dev-arm64-cross test -e /usr/aarch64-linux-gnu/include/stdio.h
+    want qemu-user has qemu-aarch64
 fi
 
 if [ -n "$wanted" ]; then
@@ -56,7 +61,7 @@ if [ -n "$wanted" ]; then
     DEBIAN_FRONTEND=noninteractive $root apt-get install -q -y --no-install-recommends $wanted
 fi
 
-if [ "$1" = test ] && ! cmp -s tests/node/package-lock.json tests/node/node_modules/.installed; then
+if [ "$1" != run ] && ! cmp -s tests/node/package-lock.json tests/node/node_modules/.installed; then
     if [ "${DEPS:-}" = never ]; then
         [ -d tests/node/node_modules ] || echo "tests/node/node_modules is missing: the glTF checks will be skipped" >&2
     else

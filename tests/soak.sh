@@ -1,25 +1,147 @@
 #!/bin/sh
-# soak.sh: what takes longer than make test may: every test under TSan and with the other compiler, the same bits from both compilers
-# at every optimisation, and ten simulated minutes of every style in every clip. Its last line counts all.
+# soak.sh: what takes longer than make test may, with the time that each part took: ten simulated minutes of every style under
+# the most violent motion there is, every test under TSan, the same bits from both compilers at every optimisation and on
+# another architecture, and fuzzing of all that reads bytes from outside. Its last line counts all.
+#
+# AWT_DATA: where motion files are (else ../shared/data); SECONDS_SIMULATED, FUZZ_SECONDS (of each target): for a shorter run.
 set -u
 cd "$(dirname "$0")/.."
 . tests/suites.sh
+data=${AWT_DATA:-../shared/data}/motion
+styles="short short-curly long long-curly"
+began=$(date +%s)
 
+# How long the part took that began with the last call.
+took() {
+    now=$(date +%s)
+    echo "   ($1: $((now - began)) s)"
+    began=$now
+}
+
+# One line for what each file named says last, every 20 s, while any process of $running lives.
+watch_logs() {
+    while kill -0 $running 2>/dev/null; do
+        sleep 20
+        for file in "$@"; do
+            [ -s "$file" ] && tail -n 1 "$file" | cut -c 1-150
+        done
+    done
+}
+
+# ---- ten minutes of violence, as many styles at once as there are processors, at most two ----
+
+# styles_in NAME STYLE...: one after the other.
+styles_in() {
+    name=$1
+    shift
+    for style in "$@"; do
+        build/release/awt-bench soak --style "$style" --seconds "${SECONDS_SIMULATED:-600}" $clips \
+            >build/soak-$style.log 2>build/soak-$name.progress
+    done
+}
+
+violence() {
+    clips="lean jump run shake"
+    if [ -d "$data" ]; then
+        clips="$clips $(echo "$data"/*.bvh) $(echo "$data"/*user*.csv)"
+    else
+        echo "skip: no motion files in $data: only the built-in clips are tried"
+        skipped=$((skipped + 1))
+    fi
+    echo "== ${SECONDS_SIMULATED:-600} simulated seconds of every style, the most violent motion"
+    rm -f build/soak-*.log build/soak-*.progress
+    if [ "$jobs" -gt 1 ]; then
+        styles_in one short long &
+        running=$!
+        styles_in two short-curly long-curly &
+        running="$running $!"
+    else
+        styles_in one $styles &
+        running=$!
+    fi
+    watch_logs build/soak-one.progress build/soak-two.progress
+    wait
+    sed '/^[0-9]* passed/d;/ energy /d;/^FAIL/d' build/soak-short.log
+    for style in $styles; do
+        grep -e ' energy ' -e '^FAIL' build/soak-$style.log
+        count build/soak-$style.log
+    done
+}
+
+# ---- the same bits everywhere: the tests that know the very bits, in a program without C++ ----
+
+# same_bits NAME RUNNER MAKE-ARGUMENTS...
+same_bits() {
+    name=$1 runner=$2
+    shift 2
+    make --no-print-directory -j"$jobs" B=build/bits SRC_unit="tests/main.c tests/unit/test_golden.c \
+        tests/unit/test_styles.c tests/unit/fixture.c" SRC_core="$(echo core/*/*.c)" SRC_server= WRAP= WARN="-Wall -Wextra" \
+        LDLIBS_ALL="-lm -pthread" "$@" build/bits/tests >build/make.log 2>&1 || {
+        tail -n 20 build/make.log
+        echo "FAIL $name: does not build"
+        failed=$((failed + 1))
+        return
+    }
+    suite "same bits, $name" $runner build/bits/tests golden same_on_every_compiler
+}
+
+all_bits() {
+    for flags in -O0 -O1 -O2 -O3 "-O3 -march=native"; do
+        same_bits "gcc $flags" "" CC=gcc CXX=gcc CFLAGS="$flags"
+    done
+    for flags in -O0 -O2 -O3 "-O3 -march=native"; do
+        same_bits "clang $flags" "" CC=clang CXX=clang CFLAGS="$flags"
+    done
+    if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64 >/dev/null 2>&1; then
+        same_bits "aarch64 gcc -O2, under qemu" qemu-aarch64 CC=aarch64-linux-gnu-gcc CXX=aarch64-linux-gnu-gcc LDFLAGS=-static
+    else
+        echo "skip: no aarch64 compiler or no qemu-aarch64 here"
+        skipped=$((skipped + 1))
+    fi
+}
+
+# ---- fuzzing ----
+
+fuzzer() {
+    echo "== building config=fuzz"
+    make --no-print-directory -j"$jobs" config=fuzz CC=clang CXX=clang++ build/fuzz/fuzz >build/make.log 2>&1 && return
+    grep -v '^  [A-Z]* ' build/make.log | tail -n 40
+    echo "0 passed, 1 failed"
+    exit 1
+}
+
+# fuzz TARGET: begins from seeds made here, and from what earlier runs found.
+fuzz() {
+    corpus=build/fuzz/corpus/$1
+    mkdir -p "$corpus"
+    echo "== fuzzing: $1, ${FUZZ_SECONDS:-60} s"
+    if AWT_FUZZ=$1 AWT_FUZZ_SEEDS=$corpus build/fuzz/fuzz >build/fuzz/$1.log 2>&1 &&
+        AWT_FUZZ=$1 build/fuzz/fuzz -max_total_time="${FUZZ_SECONDS:-60}" -timeout=20 -rss_limit_mb=2048 \
+            -artifact_prefix=build/fuzz/$1- "$corpus" >>build/fuzz/$1.log 2>&1; then
+        tail -n 1 build/fuzz/$1.log
+        passed=$((passed + 1))
+    else
+        tail -n 30 build/fuzz/$1.log
+        echo "FAIL: the input is in build/fuzz/$1-*, all it said in build/fuzz/$1.log"
+        failed=$((failed + 1))
+    fi
+}
+
+build config=release
+took building
+violence
+took "the most violent motion"
+all_bits
+took "same bits"
+fuzzer
+for target in strands hierarchy motion message snapshot frame json; do
+    fuzz "$target"
+done
+took fuzzing
+build config=release CC=clang CXX=clang++ B=build/clang
+suite "every test, clang -O2" build/clang/tests
+took "every test, clang"
 build config=tsan
 suite "every test, TSan" build/tsan/tests
-build config=release CC=clang CXX=clang++
-suite "every test, clang -O2" build/release/tests
-for flags in -O0 -O1 -O3 "-O3 -march=native"; do
-    build config=release CFLAGS="$flags" CXXFLAGS="$flags"
-    suite "same bits, gcc $flags" build/release/tests golden
-done
-for flags in -O0 -O3 "-O3 -march=native"; do
-    build config=release CC=clang CXX=clang++ CFLAGS="$flags" CXXFLAGS="$flags"
-    suite "same bits, clang $flags" build/release/tests golden
-done
-build config=release
-for clip in lean jump run shake; do
-    echo "== ten simulated minutes, $clip"
-    build/release/awt-bench paper --motion "$clip" --seconds 600 2>/dev/null || failed=$((failed + 1))
-done
+took "every test, TSan"
 finish

@@ -1,5 +1,5 @@
-/* builtin.c: the four clips that need no file. Each is still for its first second and rests at its end, and moves
- * smoothly (C1) between, so that a clip tests what it is meant to test and not a jerk of its own.
+/* builtin.c: the clips that need no file. Each is still for its first second and rests at its end (or begins there
+ * anew), and moves smoothly (C1) between, so that a clip tests what it is meant to test and not a jerk of its own.
  *
  * A clip says at each time how far the whole person is displaced, how the upper body turns about the hips, and how the
  * head turns about the top of the neck; the poses follow from these. */
@@ -49,13 +49,27 @@ static double window(double t, double from, double to, double edge)
     return ramp(t, from, from + edge) * (1 - ramp(t, to - edge, to));
 }
 
-/* PHYSICS.md's lean: 1 s still, 3 s of two bows from the hips, 55 degrees deep, the head nodding along, 6 s rest. */
-static posture posture_lean(double t)
+#define BOW_FROM_S 1.0
+#define BOW_S 1.5
+
+/* So many bows from the hips after a second, 55 degrees deep, the head nodding along. */
+static posture posture_bows(double t, int bows)
 {
-    double from = 1, bow_s = 1.5;
-    double u = t < from || t > from + 2 * bow_s ? 0 : sin((t - from) * TRIG_PI / bow_s);
+    double u = t < BOW_FROM_S || t > BOW_FROM_S + bows * BOW_S ? 0 : sin((t - BOW_FROM_S) * TRIG_PI / BOW_S);
     double bow = u * u;
     return (posture){.body = {.pitch = radians(55) * bow}, .head = {.pitch = radians(20) * bow * bow}};
+}
+
+/* PHYSICS.md's lean: 1 s still, 3 s of two bows, 6 s rest. */
+static posture posture_lean(double t)
+{
+    return posture_bows(t, 2);
+}
+
+/* The bows alone, as many as the clip has room for; the last ends with the clip, and then they begin again. */
+static posture posture_lean_forever(double t)
+{
+    return posture_bows(t, 6);
 }
 
 /* A height and the velocity there; cubic Hermite pieces between. A flight from v up to v down is one such piece, and
@@ -126,11 +140,14 @@ static posture posture_shake(double t)
 static const struct {
     const char *name, *description;
     posture (*at)(double t);
+    int64_t repeat_us;
 } BUILTINS[] = {
-    {"lean", "built-in lean: 1 s still, 3 s of two bows forward from the hips, 6 s rest", posture_lean},
-    {"jump", "built-in jump: a crouch and five hops of 25 cm, then rest", posture_jump},
-    {"run", "built-in run: 2.8 steps a second on a treadmill, then rest", posture_run},
-    {"shake", "built-in shake: \"no\" at 2 Hz, 50 degrees to each side, then nods, then rest", posture_shake},
+    {"lean", "built-in lean: 1 s still, 3 s of two bows forward from the hips, 6 s rest", posture_lean, 0},
+    {"jump", "built-in jump: a crouch and five hops of 25 cm, then rest", posture_jump, 0},
+    {"run", "built-in run: 2.8 steps a second on a treadmill, then rest", posture_run, 0},
+    {"shake", "built-in shake: \"no\" at 2 Hz, 50 degrees to each side, then nods, then rest", posture_shake, 0},
+    {"lean-forever", "built-in lean without end: 1 s still, then bows forward from the hips every 1.5 s",
+     posture_lean_forever, 9000000},
 };
 
 /* Yaw, then pitch, then roll. */
@@ -170,7 +187,7 @@ bool motion_builtin(const char *name, motion *out)
             posture p = BUILTINS[b].at((double)i / BUILTIN_RATE);
             samples[i] = sample_of_posture(p, (int64_t)i * 1000000 / BUILTIN_RATE);
         }
-        *out = (motion){.sample_count = BUILTIN_SAMPLES, .samples = samples};
+        *out = (motion){.sample_count = BUILTIN_SAMPLES, .samples = samples, .repeat_us = BUILTINS[b].repeat_us};
         snprintf(out->description, sizeof out->description, "%s", BUILTINS[b].description);
         return true;
     }

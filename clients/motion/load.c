@@ -18,7 +18,8 @@ bool motion_load(const char *name, const motion_options *options, motion *out, c
     unsigned char *bytes = files_read(name, LOAD_MAX_FILE, &size, error, error_size);
     if (!bytes) {
         size_t used = strlen(error);
-        snprintf(error + used, error_size - used, " (the built-in motions are lean, jump, run and shake)");
+        snprintf(error + used, error_size - used,
+                 " (the built-in motions are lean, lean-forever, jump, run and shake)");
         return false;
     }
     awt_error why;

@@ -119,12 +119,20 @@ static size_t motion_find(const motion *m, int64_t time_us)
     return low;
 }
 
-motion_sample motion_at(const motion *m, int64_t time_us)
+/* The time within the samples at which a clip that repeats is at time_us. */
+static int64_t motion_fold(const motion *m, int64_t time_us)
 {
+    int64_t end_us = m->samples[m->sample_count - 1].time_us;
+    return m->repeat_us > 0 && time_us > end_us ? end_us - m->repeat_us + (time_us - end_us) % m->repeat_us : time_us;
+}
+
+motion_sample motion_at(const motion *m, int64_t at_us)
+{
+    int64_t time_us = motion_fold(m, at_us);
     size_t i = motion_find(m, time_us);
     const motion_sample *s = &m->samples[i];
     motion_sample result = *s;
-    result.time_us = time_us;
+    result.time_us = at_us;
     if (time_us <= s->time_us || i + 1 == m->sample_count) {
         return result;
     }

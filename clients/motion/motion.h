@@ -1,4 +1,4 @@
-/* motion.h: head motion from files (BVH, head-pose CSV) and from four built-in clips, as head and body poses in the
+/* motion.h: head motion from files (BVH, head-pose CSV) and from built-in clips, as head and body poses in the
  * contract's frame (DATA.md, Registration). Pure: bytes in, poses out.
  *
  * Head and body pose are rigid motions away from one common rest: at rest both are the same translation and no
@@ -16,6 +16,9 @@ typedef struct motion_sample {
 typedef struct motion {
     size_t sample_count;
     motion_sample *samples; /* heap; motion_fini */
+    /* 0: held after its last sample; else this long a part at its end is played again and again, which begins and ends
+     * in the same pose, at rest */
+    int64_t repeat_us;
     /* what was taken, for the caller to print */
     char description[240];
 } motion;
@@ -34,10 +37,11 @@ typedef struct motion_options {
 awt_status motion_read(const void *bytes, size_t size, const motion_options *options, motion *out, awt_error *error);
 
 /* The built-in clips, all 10 s: "lean" (1 s still, 3 s lean forward and back, 6 s rest: PHYSICS.md), "jump", "run",
- * "shake"; NULL-named or unknown: false. The samples are 240 a second. False also where memory is short. */
+ * "shake"; and "lean-forever", the lean's bows without a rest and without an end. NULL-named or unknown: false. The
+ * samples are 240 a second. False also where memory is short. */
 bool motion_builtin(const char *name, motion *out);
 
-/* Pose at a time: Hermite between samples, held before the first and after the last. */
+/* Pose at a time: Hermite between samples, held before the first, and after the last unless it repeats. */
 motion_sample motion_at(const motion *m, int64_t time_us);
 
 void motion_fini(motion *m);

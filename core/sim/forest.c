@@ -8,14 +8,10 @@
 #include "sim/obstacle.h"
 #include "sim/rest.h"
 #include "sim/step.h"
+#include "sim/suit.h"
 #include "sim/tree.h"
 
 #include <stdlib.h>
-
-#define STANDARD_GRAVITY 9.81f
-#define STYLE_BEND_RAD 0.7f
-#define STYLE_OMEGA_LEAST 15.0f
-#define STYLE_OMEGA_MOST 40.0f
 
 static awt_status params_check(const awt_params *params, awt_error *error)
 {
@@ -105,19 +101,10 @@ static void forest_rest(awt_forest *f)
     embed_rest(f);
 }
 
-/* The style frequency at which gravity alone would bend every joint of this groom alike: short segments need stiffer
- * ones. The built-in styles' own values lie near this curve. */
-static float style_omega_of(const awt_groom *groom)
-{
-    float segment_m = (float)groom->info.median_strand_m / (float)(groom->info.sections - 1);
-    float omega = sqrtf(STANDARD_GRAVITY / (STYLE_BEND_RAD * (segment_m > 1e-3f ? segment_m : 1e-3f)));
-    return omega < STYLE_OMEGA_LEAST ? STYLE_OMEGA_LEAST : omega > STYLE_OMEGA_MOST ? STYLE_OMEGA_MOST : omega;
-}
-
 awt_forest_def awt_forest_def_default(const awt_groom *groom)
 {
     awt_forest_def def = {.params = awt_params_default()};
-    def.params.style_omega = style_omega_of(groom);
+    def.params.style_omega = suit_style_omega(groom);
     def.collider_count = obstacle_defaults(groom, def.colliders);
     def.start.head.orientation[3] = 1.0;
     def.start.body.orientation[3] = 1.0;

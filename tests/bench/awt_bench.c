@@ -1,4 +1,4 @@
-/* awt_bench.c: awt-bench: measures, and asserts nothing. */
+/* awt_bench.c: awt-bench: measures, and asserts nothing but in soak. */
 #include "bench/bench.h"
 
 #include "base/version.h"
@@ -13,6 +13,7 @@ static const struct {
 } SUBCOMMANDS[] = {
     {"paper", bench_paper, "the table of the paper's §5.2: single level against AWT, for the four styles"},
     {"encode", bench_encode, "frames: encoding, decoding and size, beside stock libdraco"},
+    {"soak", bench_soak, "minutes of the most violent motion, checked: no NaN, no growth, rest at the end"},
 };
 
 int main(int argc, char **argv)

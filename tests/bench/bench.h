@@ -10,6 +10,7 @@ enum { BENCH_MAX_WORKERS = 64 };
 /* Arguments without the subcommand's name; the exit code. */
 int bench_paper(int argc, char *const *argv);
 int bench_encode(int argc, char *const *argv);
+int bench_soak(int argc, char *const *argv);
 
 /* How the values of a list lie. */
 typedef struct bench_spread {

@@ -58,6 +58,17 @@ static bool paper_measure(const paper_plan *plan, const awt_style *style, style_
     return done;
 }
 
+/* What each further head of the same groom costs, per finest node and per strand. */
+static double bytes_per_node(const style_figures *f)
+{
+    return (double)f->awt.forest_bytes / f->info.finest_nodes;
+}
+
+static double bytes_per_strand(const style_figures *f)
+{
+    return (double)f->awt.forest_bytes / f->info.strand_count;
+}
+
 /* ---- the table ---- */
 
 static void table_head(FILE *text, const paper_plan *plan)
@@ -66,9 +77,9 @@ static void table_head(FILE *text, const paper_plan *plan)
             plan->clip.description, (double)plan->length_us * 1e-6, (int)(AWT_STEP_US / 1000), plan->strands,
             plan->points, plan->workers, plan->workers == 1 ? "" : "s");
     fputs("                           |  single level, ms    |            AWT, ms           |       |  active nodes |"
-          "                      |         ns per\n"
+          "                      |         ns per    |   memory of a forest\n"
           "style            N L coarse |   mean    p99    max |   mean    p99    max last s | ratio |    mean    max |"
-          " splits merges merged |  node guide point\n",
+          " splits merges merged |  node guide point |   MiB  B/node B/strand\n",
           text);
 }
 
@@ -81,11 +92,12 @@ static void table_row(FILE *text, const awt_style *style, const style_figures *f
     }
     fprintf(text,
             "%-12s %5" PRIu32 " %" PRIu32 " %6" PRIu32 " | %6.3f %6.3f %6.3f | %6.3f %6.3f %6.3f %6.3f | %4.1fx | "
-            "%7.0f %6" PRIu32 " | %6" PRIu32 " %6" PRIu32 " %6s | %5.0f %5.1f %5.2f\n",
+            "%7.0f %6" PRIu32 " | %6" PRIu32 " %6" PRIu32 " %6s | %5.0f %5.1f %5.2f | %5.2f %7.0f %8.0f\n",
             style->name, f->info.finest_nodes, f->info.levels, f->info.coarse_nodes, single->mean, single->p99,
             single->max, awt->mean, awt->p99, awt->max, f->awt.last_second_ms, single->mean / awt->mean,
             f->awt.active_mean, f->awt.active_max, f->awt.splits, f->awt.merges, merged, f->awt.active_ns,
-            f->awt.guide_ns, f->awt.point_ns);
+            f->awt.guide_ns, f->awt.point_ns, (double)f->awt.forest_bytes / 1048576, bytes_per_node(f),
+            bytes_per_strand(f));
     fflush(text);
 }
 
@@ -131,7 +143,8 @@ static void json_style(jsonout *j, const awt_style *style, const style_figures *
     jsonout_real(j, "single_ns_per_active_node", f->single.active_ns);
     jsonout_real(j, "ns_per_guide", f->awt.guide_ns);
     jsonout_real(j, "ns_per_strand_point", f->awt.point_ns);
-    jsonout_real(j, "forest_bytes_per_finest_node", (double)f->awt.forest_bytes / f->info.finest_nodes);
+    jsonout_real(j, "forest_bytes_per_finest_node", bytes_per_node(f));
+    jsonout_real(j, "forest_bytes_per_strand", bytes_per_strand(f));
     jsonout_real(j, "groom_bytes_per_strand", (double)f->info.bytes / f->info.strand_count);
     jsonout_float(j, "link_error", f->awt.link_error);
     jsonout_unsigned(j, "unreached_contacts", f->awt.unreached_contacts);

@@ -142,7 +142,7 @@ static bool plan_options(int argc, char *const *argv, paper_words *words, paper_
         {"strands", OPTION_INTEGER, "N", &words->strands, 1, AWT_MAX_STRANDS, "strands of each style"},
         {"points", OPTION_INTEGER, "N", &words->points, 2, AWT_MAX_POINTS_PER_STRAND, "points of each strand"},
         {"motion", OPTION_TEXT, "CLIP", &plan->motion_name, 0, 0,
-         "lean, jump, run, shake, or a BVH or head-pose CSV file"},
+         "lean, lean-forever, jump, run, shake, or a BVH or head-pose CSV file"},
         {"joint", OPTION_TEXT, "NAME", &words->motion.joint, 0, 0, "the head's joint in a BVH; else the one named so"},
         {"body-joint", OPTION_TEXT, "NAME", &words->motion.body_joint, 0, 0, "the body's; else 3 above the head's"},
         {"motion-scale", OPTION_REAL, "S", &words->motion.scale, 0, 1e9,

@@ -1,7 +1,7 @@
 // body.mjs: head and body as one smooth surface: tapered capsules joined softly, found by sphere tracing.
 import { add, dot, rotate, scale, sub, unit } from './vector.mjs';
 
-const JOIN = 0.02; /* metres over which parts melt into each other */
+const JOIN = 0.02; /* metres over which parts melt into each other: more, and the body swells through hair that lies on it */
 const SKIN = [0.55, 0.33, 0.23], SHIRT = [0.1, 0.12, 0.17], EYE = [0.85, 0.83, 0.8], IRIS = [0.05, 0.035, 0.03],
   LIP = [0.42, 0.16, 0.13], BROW = [0.1, 0.06, 0.04];
 
@@ -28,10 +28,10 @@ function faceParts(r) {
 
 /** What is painted on the face: strokes from a to b seen from the front, in head radii, the last on top. */
 const PAINT = [-1, 1].flatMap((side) => [
-  { a: [side * 0.26, -0.06], b: [side * 0.43, -0.05], radius: 0.062, colour: EYE },
-  { a: [side * 0.35, -0.05], b: [side * 0.35, -0.05], radius: 0.055, colour: IRIS },
-  { a: [side * 0.2, 0.12], b: [side * 0.5, 0.14], radius: 0.03, colour: BROW },
-  { a: [0, -0.66], b: [side * 0.2, -0.65], radius: 0.04, colour: LIP },
+  { a: [side * 0.27, -0.06], b: [side * 0.42, -0.055], radius: 0.05, colour: EYE },
+  { a: [side * 0.345, -0.055], b: [side * 0.345, -0.055], radius: 0.048, colour: IRIS },
+  { a: [side * 0.2, 0.135], b: [side * 0.47, 0.125], radius: 0.024, colour: BROW },
+  { a: [0, -0.665], b: [side * 0.19, -0.635], radius: 0.035, colour: LIP },
 ]);
 
 function paintAt(face, point) {
@@ -56,10 +56,11 @@ export function placeBody(colliders, head, body) {
     const place = (p) => add(rotate(pose.orientation, p), sub(pose.position, head.position));
     const a = place(part.a), along = sub(place(part.b), a), long = Math.hypot(...along);
     const growth = long > 0 ? (part.radius_b - part.radius_a) / long : 0;
+    const colour = part.frame === 'body' && part.a[1] < -0.21 ? SHIRT : SKIN;
+    const join = part.join ?? JOIN;
     return {
-      a, axis: unit(along), long, k: Math.max(-0.99, Math.min(0.99, growth)), radius: part.radius_a,
-      colour: part.frame === 'body' && part.a[1] < -0.21 ? SHIRT : SKIN, join: part.join ?? JOIN,
-      centre: add(a, scale(along, 0.5)), reach: long / 2 + Math.max(part.radius_a, part.radius_b) + JOIN,
+      a, axis: unit(along), long, colour, join, k: Math.max(-0.99, Math.min(0.99, growth)), radius: part.radius_a,
+      centre: add(a, scale(along, 0.5)), reach: long / 2 + Math.max(part.radius_a, part.radius_b) + join,
     };
   });
   const [x, y, z, w] = head.orientation;

@@ -76,13 +76,15 @@ export function colourHair(hair, ambient, camera, lights, sky) {
     nx /= size, ny /= size, nz /= size;
     let ex = camera.position[0] - x, ey = camera.position[1] - y, ez = camera.position[2] - z;
     const far = Math.hypot(ex, ey, ez);
+    const loose = Math.max(0, Math.min(1, (Math.hypot(x, y, z) - 0.2) / 0.2)); /* no body with a side of its own here */
     ex /= far, ey /= far, ez /= far;
     const sinEye = tx * ex + ty * ey + tz * ez, cosEye = Math.sqrt(Math.max(0, 1 - sinEye * sinEye));
     const tone = 0.75 + 0.5 * grain[v], warm = 0.94 + 0.12 * ((grain[v] * 7) % 1);
     let r = 0, g = 0, b = 0;
     for (const { direction: d, colour, map } of lights) {
       const sinLight = tx * d[0] + ty * d[1] + tz * d[2], cosLight = Math.sqrt(Math.max(0, 1 - sinLight * sinLight));
-      const facing = Math.max(0, (nx * d[0] + ny * d[1] + nz * d[2] + 0.35) / 1.35);
+      const side = Math.max(0, (nx * d[0] + ny * d[1] + nz * d[2] + 0.35) / 1.35);
+      const facing = side + 0.6 * loose * Math.max(0, 0.6 - side);
       const reaches = Shade.keyAt(map, vertices, i) * facing;
       const diffuse = 0.55 * cosLight * tone;
       const glint = 0.035 * lobe(sinLight, cosLight, sinEye, cosEye, -0.08, 90);

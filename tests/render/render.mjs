@@ -2,7 +2,8 @@
 //
 //   node render.mjs --out sheet.png --views front,side,back A.glb B.glb
 //
-// One row for each file, one column for each view. The camera follows the head but does not turn with it.
+// One row for each file, one column for each view, or with --labels one column for each file. The camera follows the head
+// but does not turn with it, and sees all files of one view at one scale.
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { parseArgs } from 'node:util';
@@ -12,6 +13,7 @@ import { DEFAULT_COLLIDERS, drawBody, placeBody, surfacePoints } from './body.mj
 import { Camera, VIEWS } from './camera.mjs';
 import { Canvas, joinSheet, widenRibbons } from './canvas.mjs';
 import { ambientOf, colourHair, gatherHair } from './hair.mjs';
+import { drawLabel } from './label.mjs';
 import { Shade } from './light.mjs';
 import { add, dot, scale, unit } from './vector.mjs';
 
@@ -24,7 +26,9 @@ const HELP = `usage: node render.mjs [options] FILE.glb...
                         what awtctl play --json wrote: {"colliders": [...], "frames": [{"file": "....glb",
                         "body": {"position": [x,y,z], "orientation": [x,y,z,w]}}, ...]}. A file that stands in no frame
                         has its body upright under the head.
-  --zoom S              1: head and hair fill the picture; 2: twice as near [1]
+  --zoom S              1: head and hair of all files just fill the picture; 2: twice as near [1]
+  --labels A,B          what stands above each file's column; the views are then below one another
+  --colours N           of the picture at most, to 256 [160]
   --bald                no hair
   --help                this text`;
 
@@ -40,6 +44,8 @@ function readOptions() {
       supersample: { type: 'string', default: '2' },
       colliders: { type: 'string' },
       zoom: { type: 'string', default: '1' },
+      labels: { type: 'string' },
+      colours: { type: 'string', default: '160' },
       bald: { type: 'boolean', default: false },
       help: { type: 'boolean', default: false },
     },
@@ -47,7 +53,8 @@ function readOptions() {
   const size = /^(\d{1,4})x(\d{1,4})$/.exec(values.size);
   const views = values.views.split(',');
   if (values.help || positionals.length === 0 || !size || !views.every((view) => view in VIEWS) ||
-      !(values.zoom > 0) || !(values.supersample >= 1 && values.supersample <= 4)) {
+      !(values.zoom > 0) || !(values.supersample >= 1 && values.supersample <= 4) ||
+      !(values.colours >= 2 && values.colours <= 256)) {
     console.log(HELP);
     process.exit(values.help ? 0 : 2);
   }
@@ -78,19 +85,39 @@ async function readScene(file, colliders, body, bald) {
   return { file, hair, person, strands: frame.node.extras.strands };
 }
 
-/** The ball that every picture must show: the head and nearly all hair, of all frames. */
-function frameBall(scenes) {
-  let least = -0.17, greatest = 0.13, wide = 0.13;
+/** How far hair reaches from the head's centre, nearly all of it in every frame. */
+function reachOf(scenes) {
+  let reach = 0.2;
   for (const { hair } of scenes) {
-    const heights = hair.vertices.filter((_, i) => i % 3 === 1 && i % 33 === 1).sort();
-    const wides = hair.vertices.filter((_, i) => i % 3 !== 1 && i % 33 < 3).map(Math.abs).sort();
-    if (heights.length > 0) {
-      least = Math.min(least, heights[Math.floor(heights.length * 0.005)]);
-      greatest = Math.max(greatest, heights[Math.floor(heights.length * 0.995)]);
-      wide = Math.max(wide, wides[Math.floor(wides.length * 0.995)]);
+    const far = new Float32Array(Math.ceil(hair.vertices.length / 33));
+    for (let i = 0, n = 0; i + 2 < hair.vertices.length; i += 33) {
+      far[n++] = Math.hypot(hair.vertices[i], hair.vertices[i + 1], hair.vertices[i + 2]);
+    }
+    reach = Math.max(reach, far.sort()[Math.floor(far.length * 0.995)] ?? 0);
+  }
+  return reach;
+}
+
+/** A camera that shows head, neck and nearly all hair of every frame, as near as that lets it. */
+function placeCamera(view, scenes, reach, { zoom, width, height, samples }) {
+  const size = [width * samples, height * samples], far = new Camera(view, [0, 0, 0], reach, ...size);
+  const least = [Infinity, Infinity], greatest = [-Infinity, -Infinity];
+  for (const { hair } of scenes) {
+    const body = [0.13, 0, 0, -0.13, 0, 0, 0, 0.13, 0, 0, -0.2, 0, 0, 0, 0.13, 0, 0, -0.13];
+    for (const [points, share] of [[body, 0], [far.project(hair.vertices.filter((_, i) => i % 33 < 3)), 0.001]]) {
+      const screen = points === body ? far.project(body) : points;
+      for (const axis of screen.length > 0 ? [0, 1] : []) {
+        const places = screen.filter((_, i) => i % 3 === axis).sort(), last = places.length - 1;
+        least[axis] = Math.min(least[axis], places[Math.floor(share * last)]);
+        greatest[axis] = Math.max(greatest[axis], places[Math.ceil((1 - share) * last)]);
+      }
     }
   }
-  return { centre: [0, (least + greatest) / 2, 0], radius: 1.08 * Math.max((greatest - least) / 2, wide) };
+  const metre = far.pixels / Math.hypot(...far.position); /* pixels, at the head */
+  const [x, y] = [0, 1].map((axis) => (least[axis] + greatest[axis] - size[axis]) / 2 / metre);
+  const fills = Math.max(...[0, 1].map((axis) => (greatest[axis] - least[axis]) / size[axis]));
+  const target = add(scale(far.right, x), scale(far.up, -y));
+  return new Camera(view, target, 1.12 * fills * reach / zoom, ...size);
 }
 
 /** Lights that go with the camera: key from above its left, fill from its right, rim from behind. */
@@ -118,10 +145,8 @@ function skinLight(shade, lights) {
   };
 }
 
-function drawScene(scene, view, ball, options) {
-  const width = options.width * options.samples, height = options.height * options.samples;
-  const camera = new Camera(view, ball.centre, ball.radius / options.zoom, width, height);
-  const canvas = new Canvas(width, height);
+function drawScene(scene, camera, options) {
+  const canvas = new Canvas(camera.width, camera.height);
   const lights = placeLights(camera, scene.shade);
   canvas.fillBackground();
   const screen = camera.project(scene.hair.vertices);
@@ -140,18 +165,23 @@ const scenes = [];
 for (const file of options.files) {
   scenes.push(await readScene(file, colliders, bodies.get(basename(file)), options.bald));
 }
-const ball = frameBall(scenes);
-const rows = scenes.map((scene) => {
+const reach = reachOf(scenes);
+for (const scene of scenes) {
   /* hair is shaded by the head and by hair, skin by hair alone: its own folds are drawBody's */
   const skin = surfacePoints(scene.person, 1500), blockers = new Float32Array(skin.length + scene.hair.vertices.length);
   blockers.set(skin);
   blockers.set(scene.hair.vertices, skin.length);
-  scene.shade = new Shade(blockers, 1.5 * ball.radius);
-  scene.hairShade = new Shade(scene.hair.vertices, 1.5 * ball.radius);
+  scene.shade = new Shade(blockers, 1.5 * reach);
+  scene.hairShade = new Shade(scene.hair.vertices, 1.5 * reach);
   scene.ambient = ambientOf(scene.hair, scene.shade);
   console.log(`${basename(scene.file)}: ${scene.strands} strands`);
-  return options.views.map((view) => drawScene(scene, view, ball, options));
+}
+const rows = options.views.map((view) => {
+  const camera = placeCamera(view, scenes, reach, options);
+  return scenes.map((scene) => drawScene(scene, camera, options));
 });
-const sheet = joinSheet(rows);
-writePng(options.out, sheet.width, sheet.height, sheet.rgb);
-console.log(`${options.out}: ${sheet.width} x ${sheet.height}, rows: files, columns: ${options.views.join(', ')}`);
+const labels = options.labels?.split(',');
+labels?.forEach((label, n) => rows[0][n] && drawLabel(rows[0][n], label, 5, 5));
+const sheet = joinSheet(labels ? rows : scenes.map((_, n) => rows.map((row) => row[n])));
+const bytes = writePng(options.out, sheet.width, sheet.height, sheet.rgb, Number(options.colours));
+console.log(`${options.out}: ${sheet.width} x ${sheet.height}, ${Math.ceil(bytes / 1000)} kB`);

@@ -92,6 +92,35 @@ TEST(clips_lean_as_the_measurements_want_it)
     motion_fini(&m);
 }
 
+TEST(clips_lean_forever_bows_without_a_rest)
+{
+    motion lean = {0}, m = {0};
+    double expected[WIDTH], values[WIDTH], greatest = 0;
+    CHECK(motion_builtin("lean", &lean) && motion_builtin("lean-forever", &m));
+    for (int64_t t = 0; t < 3600000000; t = t < 12000000 ? t + 5000 : t * 3) { /* every bow is the lean's first */
+        int64_t in_bow = t < 1000000 ? t : 1000000 + (t - 1000000) % 1500000;
+        motion_sample at = motion_at(&m, t), first = motion_at(&lean, in_bow);
+        values_of(&at, values);
+        values_of(&first, expected);
+        CHECK_INT(at.time_us, t);
+        CHECK_NEAR(distance(values, expected, WIDTH), 0, 1e-5);
+    }
+    /* no kink where it begins again */
+    for (int64_t t = 9900000; t < 10100000; t += 4000) {
+        double a[WIDTH], b[WIDTH], c[WIDTH];
+        motion_sample samples[3] = {motion_at(&m, t - 4000), motion_at(&m, t), motion_at(&m, t + 4000)};
+        values_of(&samples[0], a);
+        values_of(&samples[1], b);
+        values_of(&samples[2], c);
+        for (int k = 0; k < WIDTH; k++) {
+            greatest = fmax(greatest, fabs(c[k] - 2 * b[k] + a[k]) * 250 * 250);
+        }
+    }
+    CHECK(greatest > 1 && greatest < 20);
+    motion_fini(&lean);
+    motion_fini(&m);
+}
+
 TEST(clips_jump_flies_under_gravity)
 {
     motion m = {0};
