@@ -2,7 +2,7 @@
 #include "geom/json.h"
 
 #include "base/error.h"
-#include "geom/glb_shim.h"
+#include "geom/json_number.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -194,6 +194,28 @@ bool json_is_text(const json_document *d, uint32_t value, const char *text)
            memcmp(d->text + d->tokens[value].begin, text, length) == 0;
 }
 
+bool json_is_true(const json_document *d, uint32_t value)
+{
+    return is_kind(d, value, JSON_LITERAL) && d->text[d->tokens[value].begin] == 't';
+}
+
+bool json_hexadecimal(const json_document *d, uint32_t value, uint64_t *out)
+{
+    static const char digits[] = "0123456789abcdef";
+    if (!is_kind(d, value, JSON_STRING) || d->tokens[value].end - d->tokens[value].begin != 16) {
+        return false;
+    }
+    *out = 0;
+    for (uint32_t at = d->tokens[value].begin; at < d->tokens[value].end; at++) {
+        const char *digit = strchr(digits, d->text[at]);
+        if (!digit || !*digit) {
+            return false;
+        }
+        *out = *out << 4 | (uint64_t)(digit - digits);
+    }
+    return true;
+}
+
 uint32_t json_member(const json_document *d, uint32_t object, const char *name)
 {
     if (!is_kind(d, object, JSON_OBJECT)) {
@@ -215,7 +237,7 @@ uint32_t json_items(const json_document *d, uint32_t array)
 bool json_real(const json_document *d, uint32_t value, double *out)
 {
     return is_kind(d, value, JSON_NUMBER) &&
-           glb_shim_number(d->text + d->tokens[value].begin, d->text + d->tokens[value].end, out) && isfinite(*out);
+           json_number(d->text + d->tokens[value].begin, d->text + d->tokens[value].end, out);
 }
 
 bool json_whole(const json_document *d, uint32_t value, uint32_t *out)

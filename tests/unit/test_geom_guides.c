@@ -1,0 +1,385 @@
+/* test_geom_guides.c: guides and the binding that makes strands of them again. */
+#include "check.h"
+
+#include "base/hash.h"
+#include "base/rng.h"
+#include "geom/layout.h"
+#include "geom/numbers.h"
+#include "geom/receive.h"
+#include "unit/fixture.h"
+#include "unit/groom_fixture.h"
+#include "unit/guides_fixture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ALLOWED_M 0.2e-3
+
+static const char *const styles[] = {"short", "short-curly", "long", "long-curly"};
+
+TEST(geom_numbers_come_back_whatever_they_are)
+{
+    rng random = rng_seed(41);
+    for (int bits = 2; bits <= 15; bits++) {
+        const int reach = 1 << (bits - 1);
+        int16_t numbers[300], back[300];
+        uint16_t symbols[300];
+        for (int i = 0; i < 300; i++) {
+            int number = (int)(rng_u32(&random) % (uint32_t)(2 * reach)) - reach;
+            numbers[i] = (int16_t)(i % 7 == 0 ? -reach : i % 7 == 1 ? reach - 1 : number);
+        }
+        CHECK(numbers_differences(bits, numbers, 100, symbols) < 1 << bits);
+        CHECK(numbers_sum_up(bits, symbols, 100, back));
+        CHECK_BYTES(back, numbers, sizeof numbers);
+        symbols[37] = (uint16_t)(1 << bits);
+        CHECK(!numbers_sum_up(bits, symbols, 100, back));
+        CHECK(numbers_plain(numbers, 100, symbols) < 1 << bits);
+        numbers_of_plain(symbols, 100, back);
+        CHECK_BYTES(back, numbers, sizeof numbers);
+    }
+}
+
+/* The whole way of a clip's liveliest seconds, both forms. */
+static void check_clip(guides_fixture *f, const char *clip, int frames)
+{
+    for (int n = 1; n <= frames; n++) {
+        guides_fixture_move(f, clip, INT64_C(1000000) + (int64_t)n * 100000);
+        for (int form = 0; form < GUIDES_FORMS; form++) {
+            geom_frame_stats stats;
+            double greatest, mean;
+            guides_fixture_encode(f, form, &stats);
+            guides_fixture_compare(f, &greatest, &mean);
+            CHECK_INT(stats.clamped_points, 0);
+            CHECK_INT(stats.vertices, f->info.finest_nodes);
+            CHECK(3 * stats.triangles >= stats.vertices); /* or decoders refuse it */
+            CHECK_NEAR(greatest, 0, ALLOWED_M);
+            CHECK_NEAR(mean, 0, 0.35 * ALLOWED_M);
+        }
+    }
+}
+
+TEST(geom_guides_make_the_servers_strands_within_a_fifth_of_a_millimetre)
+{
+    for (size_t s = 0; s < 4; s++) {
+        guides_fixture f;
+        guides_fixture_init(&f, fixture_groom(styles[s], 2000), styles[s]);
+        check_clip(&f, s % 2 ? "shake" : "lean", 15);
+        guides_fixture_fini(&f);
+    }
+}
+
+/* A turn of more than half round, and numbers of turns that no section has. */
+TEST(geom_guides_turn_all_the_way_round)
+{
+    guides_fixture f;
+    guides_fixture_init(&f, fixture_groom("long", 2000), "long");
+    rng random = rng_seed(42);
+    for (uint32_t n = 0; n < f.info.finest_nodes; n++) {
+        quat q = {0};
+        float *parts[4] = {&q.x, &q.y, &q.z, &q.w};
+        for (int k = 0; k < 4; k++) {
+            *parts[k] = (float)rng_between(&random, -1, 1);
+        }
+        q = quat_unit(q);
+        memcpy(f.frames + 4 * n, &q, sizeof q);
+    }
+    for (int form = 0; form < GUIDES_FORMS; form++) {
+        geom_guides back = {0};
+        double worst = 0;
+        guides_fixture_encode(&f, form, NULL);
+        CHECK_INT(geom_read_guides(f.binding, f.frame.bytes, f.frame.size, &back, NULL), AWT_OK);
+        for (uint32_t n = 0; back.frames && n < f.info.finest_nodes; n++) {
+            const float *a = f.frames + 4 * n, *b = back.frames + 4 * n;
+            double dot = fabs((double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2] + (double)a[3] * b[3]);
+            worst = fmax(worst, 1 - dot);
+        }
+        /* 1 - cos of half an angle of five steps of a milliradian: four of them where a turn keeps its side */
+        CHECK_NEAR(worst, 0, 0.5 * 0.0025 * 0.0025);
+        geom_guides_fini(&back);
+    }
+    guides_fixture_fini(&f);
+}
+
+TEST(geom_guides_of_few_strands_and_of_few_or_many_points)
+{
+    const uint32_t points[] = {2, 3, 16, 32, 100};
+    const uint32_t strands[] = {1, 2, 40};
+    for (size_t s = 0; s < 3; s++) {
+        awt_strands patch = groom_fixture_patch(strands[s]);
+        for (size_t p = 0; p < sizeof points / sizeof points[0]; p++) {
+            awt_groom_def def = awt_groom_def_default();
+            guides_fixture f;
+            def.points_per_strand = points[p];
+            def.sections = p == 0 ? 2 : 0;
+            awt_groom *groom = groom_fixture_build(&patch, &def);
+            guides_fixture_init(&f, groom, NULL);
+            check_clip(&f, "lean", 3);
+            guides_fixture_fini(&f);
+            awt_groom_destroy(groom);
+        }
+        awt_strands_fini(&patch);
+    }
+}
+
+/* The receiver takes the other kinds, too, to the bit as the reader with libdraco behind it. */
+TEST(geom_receivers_take_every_kind)
+{
+    guides_fixture f;
+    guides_fixture_init(&f, fixture_groom("long", 2000), "long");
+    for (int kind = GEOM_RIBBON; kind <= GEOM_STRANDS; kind++) {
+        const geom_layout_def def = {.kind = (geom_kind)kind};
+        const geom_frame_def frame = {.points = f.points, .head = awt_forest_head(f.forest)};
+        geom_layout *layout = NULL;
+        geom_scratch *scratch = NULL;
+        geom_strands read = {0}, received = {0};
+        CHECK_INT(geom_layout_create(f.groom, &def, &layout, NULL), AWT_OK);
+        CHECK_INT(geom_scratch_create(layout, &scratch, NULL), AWT_OK);
+        CHECK_INT(geom_encode(layout, scratch, &frame, &f.frame, NULL, NULL), AWT_OK);
+        CHECK_INT(geom_read_frame(f.frame.bytes, f.frame.size, &read, NULL), AWT_OK);
+        CHECK_INT(geom_receive_frame(NULL, f.frame.bytes, f.frame.size, &received, NULL), AWT_OK);
+        CHECK_BYTES(received.positions, read.positions, (size_t)read.strand_count * read.points_per_strand * 12);
+        CHECK_INT(received.kind, kind);
+        CHECK_INT(geom_read_guides(f.binding, f.frame.bytes, f.frame.size, &(geom_guides){0}, NULL), AWT_BAD_FORMAT);
+        geom_strands_fini(&read);
+        geom_strands_fini(&received);
+        geom_scratch_destroy(scratch);
+        geom_layout_destroy(layout);
+    }
+    guides_fixture_fini(&f);
+}
+
+TEST(geom_guides_are_not_evaluated_with_another_binding)
+{
+    guides_fixture f, other;
+    geom_strands strands = {0};
+    awt_error error = {0};
+    guides_fixture_init(&f, fixture_groom("long", 2000), "long");
+    guides_fixture_init(&other, fixture_groom("long-curly", 2000), "long-curly");
+    for (int form = 0; form < GUIDES_FORMS; form++) {
+        guides_fixture_encode(&f, form, NULL);
+        CHECK_INT(geom_receive_frame(other.binding, f.frame.bytes, f.frame.size, &strands, &error), AWT_BAD_VALUE);
+        CHECK(strstr(error.text, "another binding") != NULL);
+        CHECK_INT(geom_receive_frame(NULL, f.frame.bytes, f.frame.size, &strands, &error), AWT_BAD_VALUE);
+        CHECK_INT(geom_read_frame(f.frame.bytes, f.frame.size, &strands, &error), AWT_BAD_VALUE);
+        CHECK(strands.positions == NULL);
+    }
+    guides_fixture_fini(&other);
+    guides_fixture_fini(&f);
+}
+
+TEST(geom_guides_refuse_what_is_not_finite)
+{
+    guides_fixture f;
+    guides_fixture_init(&f, fixture_groom("long", 2000), "long");
+    for (int form = 0; form < GUIDES_FORMS; form++) {
+        geom_frame_def def = {.points = f.centres, .frames = f.frames, .head = awt_forest_head(f.forest)};
+        float *numbers[] = {f.centres + 50, f.frames + 50};
+        for (int k = 0; k < 2; k++) {
+            const float kept = *numbers[k];
+            *numbers[k] = k ? NAN : INFINITY;
+            CHECK_INT(geom_encode(f.layouts[form], f.scratches[form], &def, &f.frame, NULL, NULL), AWT_BAD_VALUE);
+            *numbers[k] = kept;
+        }
+        def.frames = NULL;
+        CHECK_INT(geom_encode(f.layouts[form], f.scratches[form], &def, &f.frame, NULL, NULL), AWT_BAD_VALUE);
+    }
+    geom_layout *layout = NULL;
+    const geom_layout_def bits = {.kind = GEOM_GUIDES, .bits = 12}, stock = {.kind = GEOM_GUIDES, .stock = true};
+    CHECK_INT(geom_layout_create(f.groom, &bits, &layout, NULL), AWT_BAD_VALUE);
+    CHECK_INT(geom_layout_create(f.groom, &stock, &layout, NULL), AWT_BAD_VALUE);
+    guides_fixture_fini(&f);
+}
+
+/* Sections far from where the others would have them: the numbers end, and it is counted. */
+TEST(geom_bound_guides_count_what_no_number_reaches)
+{
+    guides_fixture f;
+    geom_frame_stats stats;
+    guides_fixture_init(&f, fixture_groom("long", 2000), "long");
+    f.centres[3 * 100] += 5;
+    guides_fixture_encode(&f, 1, &stats);
+    CHECK(stats.clamped_points >= 1);
+    guides_fixture_encode(&f, 0, &stats);
+    CHECK_INT(stats.clamped_points, 1);
+    guides_fixture_fini(&f);
+}
+
+/* Patches of trees at rest keep their bytes, in either form. */
+TEST(geom_guides_keep_patches_that_rest)
+{
+    guides_fixture f;
+    geom_buffer kept = {0};
+    guides_fixture_init(&f, fixture_groom("long-curly", 10000), "long-curly");
+    for (int form = 0; form < GUIDES_FORMS; form++) {
+        const uint32_t patches = geom_layout_patches(f.layouts[form]);
+        bool unchanged[64] = {false};
+        CHECK(patches >= 1 && patches <= 64);
+        guides_fixture_encode(&f, form, NULL);
+        for (uint32_t i = 0; i < patches; i++) {
+            unchanged[i] = i % 2 == 0;
+        }
+        const geom_frame_def def = {.points = f.centres,
+                                    .frames = f.frames,
+                                    .head = awt_forest_head(f.forest),
+                                    .time_us = awt_forest_time(f.forest),
+                                    .unchanged = unchanged,
+                                    .previous = &f.frame};
+        geom_frame_stats stats;
+        CHECK_INT(geom_encode(f.layouts[form], f.scratches[form], &def, &kept, &stats, NULL), AWT_OK);
+        CHECK_INT(stats.encoded_patches, patches / 2);
+        CHECK_U64(kept.size, f.frame.size);
+        CHECK(kept.size == f.frame.size && memcmp(kept.bytes, f.frame.bytes, kept.size) == 0);
+    }
+    geom_buffer_fini(&kept);
+    guides_fixture_fini(&f);
+}
+
+/* ---- from strangers */
+
+static awt_groom *small_groom(void)
+{
+    awt_groom_def def = awt_groom_def_default();
+    awt_strands patch = groom_fixture_patch(24);
+    def.points_per_strand = 5;
+    awt_groom *groom = groom_fixture_build(&patch, &def);
+    awt_strands_fini(&patch);
+    return groom;
+}
+
+TEST(geom_guides_cut_short_or_damaged_do_no_harm)
+{
+    awt_groom *groom = small_groom();
+    guides_fixture f;
+    guides_fixture_init(&f, groom, NULL);
+    rng random = rng_seed(43);
+    for (int form = 0; form < GUIDES_FORMS; form++) {
+        int read = 0;
+        guides_fixture_encode(&f, form, NULL);
+        unsigned char *copy = malloc(f.frame.size);
+        for (size_t size = 12; size < f.frame.size; size++) { /* with a header that agrees */
+            uint32_t length = (uint32_t)size;
+            geom_strands strands;
+            unsigned char *cut = malloc(size);
+            memcpy(cut, f.frame.bytes, size);
+            memcpy(cut + 8, &length, 4);
+            CHECK_INT(geom_receive_frame(f.binding, cut, size, &strands, NULL), AWT_BAD_FORMAT);
+            free(cut);
+        }
+        for (int round = 0; round < 6000; round++) {
+            geom_strands strands = {0};
+            memcpy(copy, f.frame.bytes, f.frame.size);
+            uint32_t from = round % 2 ? (uint32_t)f.frame.size * 2 / 3 : 0; /* the Draco data alone, half of the time */
+            for (uint32_t flips = 1 + rng_u32(&random) % 4; flips > 0; flips--) {
+                copy[from + rng_u32(&random) % ((uint32_t)f.frame.size - from)] = (unsigned char)rng_u32(&random);
+            }
+            bool taken = geom_receive_frame(f.binding, copy, f.frame.size, &strands, NULL) == AWT_OK;
+            for (size_t i = 0; taken && i < (size_t)24 * 5 * 3; i++) {
+                CHECK(isfinite(strands.positions[i]));
+            }
+            read += taken;
+            geom_strands_fini(&strands);
+        }
+        CHECK(read > 0 && read < 6000);
+        free(copy);
+    }
+    guides_fixture_fini(&f);
+    awt_groom_destroy(groom);
+}
+
+/* The same id over other bytes, as a stranger would write it. */
+static void sign(unsigned char *bytes, size_t size)
+{
+    uint64_t hash = HASH_SEED;
+    for (size_t i = 16; i + 4 <= size; i += 4) {
+        hash = hash_words(hash, bytes + i, 1);
+    }
+    memcpy(bytes + 8, &hash, sizeof hash);
+}
+
+static awt_status read_binding(const unsigned char *bytes, size_t size)
+{
+    geom_binding *binding = NULL;
+    awt_error error = {0};
+    unsigned char *copy = malloc(size ? size : 1);
+    if (size > 0) {
+        memcpy(copy, bytes, size);
+    }
+    awt_status status = geom_binding_read(copy, size, &binding, &error);
+    CHECK((status == AWT_OK) == (binding != NULL));
+    CHECK((status == AWT_OK) == (error.text[0] == '\0'));
+    geom_binding_destroy(binding);
+    free(copy);
+    return status;
+}
+
+TEST(geom_bindings_cut_short_or_damaged_are_refused)
+{
+    awt_groom *groom = small_groom();
+    guides_fixture f;
+    guides_fixture_init(&f, groom, NULL);
+    unsigned char *bytes = calloc(1, f.binding_size + 4);
+    memcpy(bytes, f.binding_bytes, f.binding_size);
+    CHECK_INT(read_binding(bytes, f.binding_size), AWT_OK);
+    for (size_t size = 0; size < f.binding_size; size++) {
+        CHECK_INT(read_binding(bytes, size), AWT_TRUNCATED);
+    }
+    CHECK_INT(read_binding(bytes, f.binding_size + 4), AWT_BAD_VALUE);
+    for (size_t i = 0; i < f.binding_size; i++) {
+        bytes[i] ^= 0x10;
+        CHECK(read_binding(bytes, f.binding_size) != AWT_OK);
+        bytes[i] ^= 0x10;
+    }
+    free(bytes);
+    guides_fixture_fini(&f);
+    awt_groom_destroy(groom);
+}
+
+/* A binding with numbers of a stranger's choice and the id that they make: refused, or whole and finite. */
+TEST(geom_bindings_that_lie_do_no_harm)
+{
+    awt_groom *groom = small_groom();
+    guides_fixture f;
+    guides_fixture_init(&f, groom, NULL);
+    rng random = rng_seed(44);
+    const float wild[] = {NAN, INFINITY, 1e30f, -1e30f, 2e6f, 0, -1};
+    unsigned char *bytes = malloc(f.binding_size);
+    int read = 0;
+    guides_fixture_encode(&f, 1, NULL);
+    for (int round = 0; round < 6000; round++) {
+        geom_binding *binding = NULL;
+        memcpy(bytes, f.binding_bytes, f.binding_size);
+        uint32_t words = round % 2 ? 8 : (uint32_t)(f.binding_size - 16) / 4; /* the counts, half of the time */
+        unsigned char *word = bytes + 16 + 4 * (rng_u32(&random) % words);
+        uint32_t value = rng_u32(&random) >> rng_u32(&random) % 32;
+        if (rng_u32(&random) % 2) {
+            memcpy(&value, &wild[rng_u32(&random) % 7], sizeof value);
+        }
+        memcpy(word, &value, sizeof value);
+        sign(bytes, f.binding_size);
+        if (geom_binding_read(bytes, f.binding_size, &binding, NULL) == AWT_OK) {
+            /* a frame that says this id */
+            char id[17];
+            geom_strands strands = {0};
+            uint64_t hash;
+            memcpy(&hash, bytes + 8, sizeof hash);
+            snprintf(id, sizeof id, "%016llx", (unsigned long long)hash);
+            char *place = strstr((char *)f.frame.bytes + 20, "\"binding\":\"");
+            CHECK(place != NULL);
+            memcpy(place + strlen("\"binding\":\""), id, 16);
+            if (geom_receive_frame(binding, f.frame.bytes, f.frame.size, &strands, NULL) == AWT_OK) {
+                for (size_t i = 0; i < (size_t)strands.strand_count * strands.points_per_strand * 3; i++) {
+                    CHECK(isfinite(strands.positions[i]));
+                }
+                read++;
+            }
+            geom_strands_fini(&strands);
+        }
+        geom_binding_destroy(binding);
+    }
+    CHECK(read > 0 && read < 6000);
+    free(bytes);
+    guides_fixture_fini(&f);
+    awt_groom_destroy(groom);
+}
