@@ -30,6 +30,8 @@ if [ "$1" = test ]; then
     want nodejs has node
     want npm has npm
     want python3 has python3
+    want gcc-mingw-w64-x86-64 has x86_64-w64-mingw32-gcc
+    want emscripten has emcc
 fi
 
 if [ -n "$wanted" ]; then

@@ -197,7 +197,8 @@ static awt_status read_head(const unsigned char *bytes, size_t size, geom_bindin
         return error_set(error, AWT_BAD_VALUE, "the binding's counts are impossible");
     }
     if (size < file_size(b)) {
-        return error_set(error, AWT_TRUNCATED, "the binding ends at byte %zu of %zu", size, file_size(b));
+        return error_set(error, AWT_TRUNCATED, "the binding ends at byte %u of %u", (unsigned)size,
+                         (unsigned)file_size(b));
     }
     if (size > file_size(b) || hash_bytes(bytes + 16, size - 16) != b->id) {
         return error_set(error, AWT_BAD_VALUE, "the binding is damaged: its bytes do not make its id");

@@ -39,7 +39,8 @@ static awt_status take_chunk(const unsigned char *bytes, size_t size, size_t *at
     }
     uint32_t length = take_u32(bytes + *at);
     if (take_u32(bytes + *at + 4) != type || length % 4 != 0 || length > size - *at - GLB_CHUNK_HEADER) {
-        return error_set(error, AWT_BAD_FORMAT, "the frame's chunk at byte %zu is not what belongs there", *at);
+        return error_set(error, AWT_BAD_FORMAT, "the frame's chunk at byte %u is not what belongs there",
+                         (unsigned)*at);
     }
     *out = (glb_chunk){bytes + *at + GLB_CHUNK_HEADER, length};
     *at += GLB_CHUNK_HEADER + length;
@@ -59,7 +60,7 @@ static awt_status take_container(const unsigned char *bytes, size_t size, glb_ch
         return error_set(error, AWT_BAD_FORMAT, "this is not a GLB 2.0 file");
     }
     if (take_u32(bytes + 8) > size) {
-        return error_set(error, AWT_TRUNCATED, "the frame ends at byte %zu of the %u it announces", size,
+        return error_set(error, AWT_TRUNCATED, "the frame ends at byte %u of the %u it announces", (unsigned)size,
                          take_u32(bytes + 8));
     }
     size_t at = GLB_HEADER;

@@ -172,8 +172,9 @@ awt_status json_read(const char *text, size_t size, json_document *out, awt_erro
     json_fini(out);
     return reader.status == AWT_NO_MEMORY
                ? error_set(error, AWT_NO_MEMORY, NULL)
-               : error_set(error, reader.status, "the frame's JSON is %s at byte %zu of %zu",
-                           reader.status == AWT_LIMIT ? "larger than any frame's" : "damaged", reader.at, size);
+               : error_set(error, reader.status, "the frame's JSON is %s at byte %u of %u",
+                           reader.status == AWT_LIMIT ? "larger than any frame's" : "damaged", (unsigned)reader.at,
+                           (unsigned)size);
 }
 
 void json_fini(json_document *document)

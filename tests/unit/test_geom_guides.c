@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "base/rng.h"
+#include "geom/guides.h"
 #include "geom/layout.h"
 #include "geom/numbers.h"
 #include "geom/receive.h"
@@ -234,6 +235,92 @@ TEST(geom_guides_keep_patches_that_rest)
     }
     geom_buffer_fini(&kept);
     guides_fixture_fini(&f);
+}
+
+/* ---- for the checks of tests/node */
+
+static void write_beside(const char *folder, const char *name, const char *ending, const void *bytes, size_t size)
+{
+    char path[400];
+    snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
+    FILE *file = fopen(path, "wb");
+    CHECK(file && fwrite(bytes, 1, size, file) == size);
+    CHECK(file && fclose(file) == 0);
+}
+
+/* The whole numbers of `frame`, attribute by attribute, of its one patch. */
+static void write_numbers(const guides_fixture *f, int form, const char *folder, const char *name)
+{
+    const size_t nodes = f->info.finest_nodes;
+    const guides_part all = {0, f->binding->wisps};
+    int16_t *numbers = calloc(6 * nodes, sizeof *numbers), *turns = numbers + (form ? 3 * nodes : 0);
+    vec3 *rebuilt = calloc(nodes, sizeof *rebuilt);
+    CHECK_INT(geom_layout_patches(f->layouts[form]), 1);
+    CHECK(guides_turns(f->binding, all, (const quat *)(const void *)f->frames, turns));
+    if (form) {
+        guides_bind(f->binding, all, (const vec3 *)(const void *)f->centres, turns, numbers, rebuilt);
+    }
+    write_beside(folder, name, ".i16", numbers, (form ? 6 : 3) * nodes * sizeof *numbers);
+    free(numbers);
+    free(rebuilt);
+}
+
+static void write_frame(guides_fixture *f, int form, const char *folder, const char *name)
+{
+    const size_t floats = (size_t)f->info.strand_count * f->info.points_per_strand * 3;
+    geom_strands received = {0};
+    guides_fixture_encode(f, form, NULL);
+    CHECK_INT(geom_receive_frame(f->binding, f->frame.bytes, f->frame.size, &received, NULL), AWT_OK);
+    write_beside(folder, name, "", f->frame.bytes, f->frame.size);
+    write_beside(folder, name, ".strands.f32", f->points, floats * sizeof(float));
+    write_beside(folder, name, ".received.f32", received.positions, floats * sizeof(float));
+    if (form == 0) {
+        write_beside(folder, name, ".f32", f->centres, 3 * (size_t)f->info.finest_nodes * sizeof(float));
+    }
+    write_numbers(f, form, folder, name);
+    geom_strands_fini(&received);
+}
+
+static void write_clip(const char *folder, const char *name, const awt_groom *groom, const char *style)
+{
+    guides_fixture f;
+    char file[80];
+    guides_fixture_init(&f, groom, style);
+    write_beside(folder, name, ".awtb", f.binding_bytes, f.binding_size);
+    for (int n = 0; n < 4; n++) {
+        guides_fixture_move(&f, "lean", INT64_C(1500000) + n * INT64_C(300000));
+        for (int form = 0; form < GUIDES_FORMS; form++) {
+            snprintf(file, sizeof file, "%s-%d%s.glb", name, n, form ? "-bound" : "");
+            write_frame(&f, form, folder, file);
+        }
+    }
+    guides_fixture_fini(&f);
+}
+
+TEST(geom_guides_for_other_receivers)
+{
+    const char *folder = getenv("AWT_FRAMES");
+    if (!folder) {
+        check_skip("AWT_FRAMES names no folder to write frames to, for tests/node/check_receiver.mjs");
+        return;
+    }
+    for (size_t s = 0; s < 4; s++) {
+        char name[32]; /* a name that begins with another's would take its frames */
+        snprintf(name, sizeof name, "style%zu", s);
+        write_clip(folder, name, fixture_groom(styles[s], 10000), styles[s]);
+    }
+    const uint32_t points[] = {2, 3, 16, 32, 100};
+    for (size_t p = 0; p < sizeof points / sizeof points[0]; p++) {
+        awt_groom_def def = awt_groom_def_default();
+        char name[32];
+        awt_strands patch = groom_fixture_patch(p % 2 ? 1 : 40);
+        def.points_per_strand = points[p];
+        awt_groom *groom = groom_fixture_build(&patch, &def);
+        snprintf(name, sizeof name, "patch%zu", p);
+        write_clip(folder, name, groom, NULL);
+        awt_groom_destroy(groom);
+        awt_strands_fini(&patch);
+    }
 }
 
 /* ---- from strangers */
