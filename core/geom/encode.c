@@ -9,6 +9,7 @@
 #include "geom/draco_shim.h"
 #include "geom/glb_template.h"
 #include "geom/guides.h"
+#include "geom/head_pose.h"
 #include "geom/layout.h"
 
 #include <math.h>
@@ -348,31 +349,12 @@ static awt_status encode_stock(encoding *e)
 
 /* ---- frames */
 
-/* glTF wants a rotation of length 1 to the last bits. */
-static awt_status take_head(const awt_pose *head, awt_pose *out, awt_error *error)
-{
-    double square = 0;
-    for (int k = 0; k < 4; k++) {
-        square += head->orientation[k] * head->orientation[k];
-    }
-    double length = sqrt(square);
-    if (!isfinite(head->position[0]) || !isfinite(head->position[1]) || !isfinite(head->position[2]) ||
-        !(fabs(length - 1.0) <= 1e-3)) {
-        return error_set(error, AWT_BAD_VALUE, "the head's pose is not finite, or its orientation is not of length 1");
-    }
-    *out = *head;
-    for (int k = 0; k < 4; k++) {
-        out->orientation[k] = head->orientation[k] / length;
-    }
-    return AWT_OK;
-}
-
 awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const geom_frame_def *def, geom_buffer *out,
                        geom_frame_stats *stats, awt_error *error)
 {
     encoding e = {.layout = layout, .scratch = scratch, .def = def, .out = out, .error = error};
     awt_pose head;
-    awt_status status = take_head(&def->head, &head, error);
+    awt_status status = head_pose_take(&def->head, &head, error);
     if (status == AWT_OK && layout->kind == GEOM_GUIDES && !def->frames) {
         status = error_set(error, AWT_BAD_VALUE, "guides have frames");
     }

@@ -94,6 +94,12 @@ awt_status geom_binding_write(const awt_groom *groom, void *bytes, size_t capaci
 awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const geom_frame_def *def, geom_buffer *out,
                        geom_frame_stats *stats, awt_error *error);
 
+/* Writes a frame of kind nodes, the AWT itself, from nodes as awt_forest_nodes gives them: lines, a node to its parent,
+ * uncompressed (nodes.c). `out` is replaced. AWT_BAD_VALUE (no nodes; something is not finite),
+ * AWT_LIMIT, AWT_NO_MEMORY. */
+awt_status geom_encode_nodes(const awt_node *nodes, uint32_t count, const awt_pose *head, int64_t time_us,
+                             geom_buffer *out, awt_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -3,76 +3,13 @@
 #include "geom/glb.h"
 
 #include "base/error.h"
-#include "geom/json.h"
+#include "geom/glb_container.h"
 #include "geom/topology.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-enum { GLB_HEADER = 12, GLB_CHUNK_HEADER = 8, GLB_TRIANGLES = 4, GLB_I16 = 5122, GLB_U16 = 5123, GLB_F32 = 5126 };
-#define GLB_MAGIC UINT32_C(0x46546C67)
-#define GLB_JSON UINT32_C(0x4E4F534A)
-#define GLB_BINARY UINT32_C(0x004E4942)
+enum { GLB_TRIANGLES = 4, GLB_I16 = 5122, GLB_U16 = 5123, GLB_F32 = 5126 };
 #define GLB_MAX_WIDTH 1e6 /* metres; that it fits a float */
-/* Greatest time that a JSON number holds to the microsecond. */
-#define GLB_MAX_TIME_US 9007199254740992.0
-
-static uint32_t take_u32(const unsigned char *p)
-{
-    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
-}
-
-/* ---- container */
-
-typedef struct glb_chunk {
-    const unsigned char *bytes;
-    size_t size;
-} glb_chunk;
-
-/* The chunk of `type` that begins at *at. */
-static awt_status take_chunk(const unsigned char *bytes, size_t size, size_t *at, uint32_t type, glb_chunk *out,
-                             awt_error *error)
-{
-    if (size - *at < GLB_CHUNK_HEADER) {
-        return error_set(error, AWT_BAD_FORMAT, "the frame lacks its %s chunk", type == GLB_JSON ? "JSON" : "binary");
-    }
-    uint32_t length = take_u32(bytes + *at);
-    if (take_u32(bytes + *at + 4) != type || length % 4 != 0 || length > size - *at - GLB_CHUNK_HEADER) {
-        return error_set(error, AWT_BAD_FORMAT, "the frame's chunk at byte %u is not what belongs there",
-                         (unsigned)*at);
-    }
-    *out = (glb_chunk){bytes + *at + GLB_CHUNK_HEADER, length};
-    *at += GLB_CHUNK_HEADER + length;
-    return AWT_OK;
-}
-
-static awt_status take_container(const unsigned char *bytes, size_t size, glb_chunk *json, glb_chunk *binary,
-                                 awt_error *error)
-{
-    if (size > GEOM_MAX_GLB) {
-        return error_set(error, AWT_LIMIT, "a frame has %d MiB at most", GEOM_MAX_GLB / (1024 * 1024));
-    }
-    if (size < GLB_HEADER) {
-        return error_set(error, AWT_TRUNCATED, "the frame ends within its first %d bytes", GLB_HEADER);
-    }
-    if (take_u32(bytes) != GLB_MAGIC || take_u32(bytes + 4) != 2) {
-        return error_set(error, AWT_BAD_FORMAT, "this is not a GLB 2.0 file");
-    }
-    if (take_u32(bytes + 8) > size) {
-        return error_set(error, AWT_TRUNCATED, "the frame ends at byte %u of the %u it announces", (unsigned)size,
-                         take_u32(bytes + 8));
-    }
-    size_t at = GLB_HEADER;
-    awt_status status = take_chunk(bytes, size, &at, GLB_JSON, json, error);
-    if (status == AWT_OK) {
-        status = take_chunk(bytes, size, &at, GLB_BINARY, binary, error);
-    }
-    if (status == AWT_OK && (at != size || take_u32(bytes + 8) != size)) {
-        return error_set(error, AWT_BAD_FORMAT, "the frame has bytes after its end");
-    }
-    return status;
-}
 
 /* ---- JSON */
 
@@ -119,28 +56,6 @@ static bool whole_member_is(const glb_reader *r, uint32_t object, const char *me
 {
     uint32_t value;
     return whole_member(r, object, member, &value) && value == expected;
-}
-
-static bool read_pose(const glb_reader *r, uint32_t node, awt_pose *head)
-{
-    double *q = head->orientation;
-    if (!json_reals(&r->json, json_member(&r->json, node, "translation"), 3, head->position) ||
-        !json_reals(&r->json, json_member(&r->json, node, "rotation"), 4, q)) {
-        return false;
-    }
-    double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    return fabs(square - 1.0) < 1e-3;
-}
-
-static bool read_time(const glb_reader *r, int64_t *time_us)
-{
-    double time;
-    uint32_t extras = json_member(&r->json, json_member(&r->json, 0, "asset"), "extras");
-    if (!json_real(&r->json, json_member(&r->json, extras, "time_us"), &time) || fabs(time) > GLB_MAX_TIME_US) {
-        return false;
-    }
-    *time_us = (int64_t)time;
-    return (double)*time_us == time;
 }
 
 static bool read_kind(const glb_reader *r, uint32_t extras, glb_frame *out)
@@ -288,7 +203,8 @@ static awt_status read_frame(glb_reader *r, glb_frame *out, awt_error *error)
     }
     r->binary_size = buffer_size;
     uint32_t extras = json_member(json, node + 1, "extras");
-    if (!read_pose(r, node + 1, &out->head) || !read_time(r, &out->time_us) || !read_counts(r, extras, out)) {
+    if (!glb_read_pose(json, node + 1, &out->head) || !glb_read_time(json, &out->time_us) ||
+        !read_counts(r, extras, out)) {
         return error_set(error, AWT_BAD_VALUE,
                          "the frame's head pose, time, kind or strand counts are missing or impossible");
     }
@@ -321,7 +237,7 @@ awt_status glb_read(const void *bytes, size_t size, glb_frame *out, awt_error *e
     glb_chunk text = {0}, binary = {0};
     glb_reader reader = {0};
     *out = (glb_frame){0};
-    awt_status status = take_container(bytes, size, &text, &binary, error);
+    awt_status status = glb_container_take(bytes, size, &text, &binary, error);
     if (status != AWT_OK) {
         return status;
     }

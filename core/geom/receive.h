@@ -41,6 +41,20 @@ void geom_guides_fini(geom_guides *guides);
 awt_status geom_receive_frame(const geom_binding *binding, const void *bytes, size_t size, geom_strands *out,
                               awt_error *error);
 
+/* Nodes read back. */
+typedef struct geom_nodes {
+    uint32_t count;
+    awt_node *nodes; /* [count], heap: geom_nodes_fini */
+    awt_pose head;
+    int64_t time_us;
+} geom_nodes;
+
+/* Reads what geom_encode_nodes wrote, from a source that need not be trusted: on success every number is finite, every
+ * radius 0 or more, every level below AWT_MAX_LEVELS, and every parent stands before its node or is the node itself.
+ * AWT_BAD_FORMAT, AWT_TRUNCATED, AWT_BAD_VALUE, AWT_LIMIT, AWT_NO_MEMORY. */
+awt_status geom_read_nodes(const void *bytes, size_t size, geom_nodes *out, awt_error *error);
+void geom_nodes_fini(geom_nodes *nodes);
+
 #ifdef __cplusplus
 }
 #endif

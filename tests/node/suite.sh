@@ -7,18 +7,19 @@ build=$1
 passed=0 failed=0 skipped=0
 if [ ! -d tests/node/node_modules/gltf-validator ] || ! command -v node >/dev/null 2>&1; then
     echo "skip: node or its packages are not here"
-    echo "0 passed, 0 failed, 8 skipped"
+    echo "0 passed, 0 failed, 9 skipped"
     exit 0
 fi
 work=$(mktemp -d)
 daemon=
 trap '[ -z "$daemon" ] || { kill $daemon; wait $daemon; } 2>/dev/null; rm -rf "$work"' EXIT
 
-# judge NAME COMMAND...: the command writes GLB files into $work/NAME, which other tools then read.
+# judge NAME COMMAND...: the command writes GLB files into $work/NAME, which $checker then reads.
+checker=tests/node/check_glb.mjs
 judge() {
     name=$1
     shift
-    if "$@" >"$work/$name.log" 2>&1 && node tests/node/check_glb.mjs "$work/$name"/*.glb >>"$work/$name.log" 2>&1; then
+    if "$@" >"$work/$name.log" 2>&1 && node "$checker" "$work/$name"/*.glb >>"$work/$name.log" 2>&1; then
         passed=$((passed + 1))
         echo "ok   $name: $(ls "$work/$name" | grep -c 'glb$') files"
     else
@@ -48,6 +49,11 @@ cross() {
 as_webassembly() {
     make --no-print-directory "$build/receiver.wasm" B="$build" && node tests/node/check_receiver.mjs "$build/receiver.wasm" "$work/guides"
 }
+
+mkdir "$work/nodes"
+checker=tests/node/check_nodes.mjs
+judge nodes env AWT_FRAMES="$work/nodes" "$build/tests" geom_nodes_for_other_readers
+checker=tests/node/check_glb.mjs
 
 mkdir "$work/guides"
 judge guides env AWT_FRAMES="$work/guides" "$build/tests" geom_guides_for_other_receivers
