@@ -63,6 +63,9 @@ static awt_status check_counts(const awt_groom_info *info, const geom_layout_def
         return error_set(error, AWT_LIMIT, "a frame holds 1 to %d strands of 2 to %d points, not %u of %u",
                          AWT_MAX_STRANDS, AWT_MAX_POINTS_PER_STRAND, info->strand_count, info->points_per_strand);
     }
+    if (def->kind > GEOM_GUIDES) {
+        return error_set(error, AWT_BAD_VALUE, "frames of nodes have no layout");
+    }
     if (def->kind == GEOM_GUIDES && (def->bits != 0 || def->stock)) {
         return error_set(error, AWT_BAD_VALUE, "guides have the bits of their binding, and no stock encoder");
     }

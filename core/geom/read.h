@@ -16,7 +16,8 @@ enum {
 typedef enum geom_kind {
     GEOM_RIBBON = 0,  /* a ribbon of triangles along each strand: for any viewer */
     GEOM_STRANDS = 1, /* the strands' points, under triangles that only make them a mesh: for engines */
-    GEOM_GUIDES = 2   /* cross-sections of the finest wisps: for who has the binding (receive.h) */
+    GEOM_GUIDES = 2,  /* cross-sections of the finest wisps: for who has the binding (receive.h) */
+    GEOM_NODES = 3    /* active AWT nodes: for overlays; without a layout (geom_encode_nodes) */
 } geom_kind;
 
 /* A frame read back, in the head frame. */

@@ -11,6 +11,9 @@ enum { BENCH_MAX_WORKERS = 64 };
 int bench_paper(int argc, char *const *argv);
 int bench_encode(int argc, char *const *argv);
 
+/* Milliseconds of a clock that only goes on. */
+double bench_now_ms(void);
+
 /* How the values of a list lie. */
 typedef struct bench_spread {
     double mean, p50, p99, max;

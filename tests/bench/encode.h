@@ -4,6 +4,7 @@
 #define BENCH_ENCODE_H
 
 #include "bench/bench.h"
+#include "bench/encode_guides.h"
 #include "geom/encode.h"
 
 enum { ENCODE_MAX_FRAMES = 1000, ENCODE_FRAME_RATE = 60 };
@@ -42,7 +43,8 @@ typedef struct encode_row {
 
 enum { ENCODE_ROWS = 2 * ENCODE_MOVINGS };
 
-/* Runs the plan. False: why has been said. */
-bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS]);
+/* Runs the plan. False: why has been said. `binding_bytes`: of what a receiver of guides has once. */
+bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS], guides_row of_guides[GUIDES_KINDS],
+                    size_t *binding_bytes);
 
 #endif

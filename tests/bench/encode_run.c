@@ -19,7 +19,7 @@
 
 enum { MOST_FILE = 1 << 30, REPEATS = 3 };
 
-static double now_ms(void)
+double bench_now_ms(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -186,9 +186,9 @@ static awt_status time_encode(const geom_layout *layout, geom_scratch *scratch, 
     awt_status status = AWT_OK;
     *ms = INFINITY;
     for (int n = 0; n < repeats && status == AWT_OK; n++) {
-        double begin = now_ms();
+        double begin = bench_now_ms();
         status = geom_encode(layout, scratch, def, out, stats, error);
-        *ms = fmin(*ms, now_ms() - begin);
+        *ms = fmin(*ms, bench_now_ms() - begin);
     }
     return status;
 }
@@ -216,9 +216,9 @@ static awt_status time_own(const hair *h, subject *s, geom_frame_def *def, awt_e
     s->bytes += (double)s->frame.size;
     if (s->layout->kind == GEOM_RIBBON) {
         uint32_t clamped = 0;
-        double begin = now_ms();
+        double begin = bench_now_ms();
         ribbon_vertices(&s->layout->shape, h->points, h->info.strand_count, s->vertices, &clamped);
-        s->vertices_ms[s->done] = now_ms() - begin;
+        s->vertices_ms[s->done] = bench_now_ms() - begin;
     }
     return status;
 }
@@ -229,7 +229,7 @@ static awt_status time_decode(subject *s, bool stock, double *ms, awt_error *err
     glb_frame glb;
     const size_t a_strand = (size_t)s->layout->points_per_strand * topology_vertices_a_point(s->layout->kind) * 3;
     awt_status status = glb_read(s->frame.bytes, s->frame.size, &glb, error);
-    double begin = now_ms();
+    double begin = bench_now_ms();
     for (uint32_t i = 0; status == AWT_OK && i < glb.patch_count; i++) {
         const glb_patch *patch = &glb.patches[i];
         float *out = s->vertices + patch->first_strand * a_strand;
@@ -241,7 +241,7 @@ static awt_status time_decode(subject *s, bool stock, double *ms, awt_error *err
             status = error_set(error, AWT_BAD_FORMAT, "our reader refuses what our encoder wrote");
         }
     }
-    *ms = now_ms() - begin;
+    *ms = bench_now_ms() - begin;
     glb_frame_fini(&glb);
     return status;
 }
@@ -318,7 +318,8 @@ static void fill_rows(const hair *h, subject *s, encode_row *rows)
     }
 }
 
-static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects[2], awt_error *error)
+static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects[2], guides_subject *guides,
+                              awt_error *error)
 {
     progress bar = progress_begin(stderr, "encoding", false);
     const uint32_t frames = plan->frames * plan->stride;
@@ -332,6 +333,9 @@ static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects
             for (int kind = 0; kind < 2 && status == AWT_OK; kind++) {
                 status = measure_frame(h, &subjects[kind], time_us, error);
             }
+            if (status == AWT_OK) {
+                status = guides_measure(guides, h->forest, h->centres, h->frames, h->points, error);
+            }
         }
         progress_show(&bar, (double)n / frames, "");
     }
@@ -339,17 +343,22 @@ static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects
     return status;
 }
 
-bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS])
+bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS], guides_row of_guides[GUIDES_KINDS],
+                    size_t *binding_bytes)
 {
     hair h = {0};
     subject subjects[2] = {{0}};
+    guides_subject guides = {0};
     awt_error error = {0};
     awt_status status = make_hair(plan, &h, &error);
+    if (status == AWT_OK) {
+        status = guides_subject_init(&guides, h.groom, plan->frames, &error);
+    }
     for (int kind = 0; kind < 2 && status == AWT_OK; kind++) {
         status = make_subject(&h, kind ? GEOM_STRANDS : GEOM_RIBBON, plan->frames, &subjects[kind], &error);
     }
     if (status == AWT_OK) {
-        status = measure_all(plan, &h, subjects, &error);
+        status = measure_all(plan, &h, subjects, &guides, &error);
     }
     for (int kind = 0; kind < 2; kind++) {
         if (status == AWT_OK) {
@@ -357,6 +366,11 @@ bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS])
         }
         free_subject(&subjects[kind]);
     }
+    if (status == AWT_OK) {
+        guides_rows(&guides, of_guides);
+        *binding_bytes = guides.binding_bytes;
+    }
+    guides_subject_fini(&guides);
     free_hair(&h);
     if (status != AWT_OK) {
         fprintf(stderr, "awt-bench encode: %s\n", error.text);

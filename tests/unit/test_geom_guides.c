@@ -190,6 +190,7 @@ TEST(geom_guides_refuse_what_is_not_finite)
     const geom_layout_def bits = {.kind = GEOM_GUIDES, .bits = 12}, stock = {.kind = GEOM_GUIDES, .stock = true};
     CHECK_INT(geom_layout_create(f.groom, &bits, &layout, NULL), AWT_BAD_VALUE);
     CHECK_INT(geom_layout_create(f.groom, &stock, &layout, NULL), AWT_BAD_VALUE);
+    CHECK_INT(geom_layout_create(f.groom, &(geom_layout_def){.kind = GEOM_NODES}, &layout, NULL), AWT_BAD_VALUE);
     guides_fixture_fini(&f);
 }
 
