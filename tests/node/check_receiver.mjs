@@ -2,11 +2,13 @@
 //
 // FOLDER holds NAME.awtb (bindings) and NAME-*.glb with FILE.glb.strands.f32 beside each: the server's strand points (raw
 // little-endian floats). Every point must be within 0.2 mm of the server's, and where FILE.glb.received.f32 is there, what
-// the receiver makes of the frame in C, every bit the same. One line a file; exit 1 on any fault.
+// the receiver makes of the frame in C, every bit the same. A reader written from proto/GEOMETRY.md alone (guides.mjs) must
+// come within a micrometre of it, too. One line a file; exit 1 on any fault.
 import { readFileSync, readdirSync, existsSync } from 'node:fs';
 import { join } from 'node:path';
+import * as document from './guides.mjs';
 
-const ALLOWED_M = 0.2e-3;
+const ALLOWED_M = 0.2e-3, ROUNDING_M = 2e-6;
 const [wasm, folder] = process.argv.slice(2);
 if (!folder) {
   console.error('usage: node check_receiver.mjs RECEIVER.wasm FOLDER');
@@ -66,8 +68,8 @@ function distances(points, expected) {
   return { worst, mean: sum / (points.length / 3) };
 }
 
-/** What is wrong with a frame, or what to say of it. */
-function check(binding, file) {
+/** What to say of a frame; throws what is wrong with it. */
+async function check(binding, described, file) {
   const bytes = readFileSync(file), expected = readFloats(`${file}.strands.f32`);
   const begin = performance.now(), points = receive(binding, bytes), took = performance.now() - begin;
   if (points.length !== expected.length) {
@@ -83,6 +85,10 @@ function check(binding, file) {
       throw new Error('the strands are not those of the receiver in C, bit by bit');
     }
   }
+  const { worst: apart } = distances(await document.strandsOfGuides(described, bytes), points);
+  if (!(apart <= ROUNDING_M)) {
+    throw new Error(`a point is ${(apart * 1e6).toFixed(1)} micrometres from what GEOMETRY.md says`);
+  }
   const strands = receiver.receiver_strands(), each = receiver.receiver_points();
   return `${strands} strands of ${each} from ${bytes.length} bytes in ${took.toFixed(1)} ms, ` +
     `worst ${(worst * 1e3).toFixed(3)} mm, mean ${(mean * 1e3).toFixed(3)} mm`;
@@ -91,9 +97,10 @@ function check(binding, file) {
 let passed = 0, failed = 0;
 for (const name of readdirSync(folder).filter((file) => file.endsWith('.awtb'))) {
   const stem = name.slice(0, -'.awtb'.length), binding = readBinding(join(folder, name));
+  const described = document.readBinding(readFileSync(join(folder, name)));
   for (const file of readdirSync(folder).filter((other) => other.startsWith(`${stem}-`) && other.endsWith('.glb'))) {
     try {
-      console.log(`ok   ${file}: ${check(binding, join(folder, file))}`);
+      console.log(`ok   ${file}: ${await check(binding, described, join(folder, file))}`);
       passed++;
     } catch (error) {
       console.log(`FAIL ${file}: ${error.message}`);
