@@ -26,7 +26,7 @@ static quat turn_of(const geom_binding *binding, const int16_t number[3])
 
 static float dot_of(const quat *from, const quat *to)
 {
-    return from->x * to->x + from->y * to->y + from->z * to->z + from->w * to->w;
+    return (from->x * to->x + from->y * to->y) + (from->z * to->z + from->w * to->w);
 }
 
 /* Three numbers of the turn that quaternion t is. False: it is none. */
@@ -61,7 +61,7 @@ static void keep_side(const geom_binding *binding, const quat *rest, const quat 
             number[k / 2] = (int16_t)(kept + (k % 2 ? far : -far));
             const quat here = quat_mul(turn_of(binding, number), rest[n]);
             const bool flipped = (dot_of(&before, &frames[n - 1]) < 0) != (dot_of(&here, &frames[n]) < 0);
-            if ((dot_of(&before, &here) < 0) == ((dot < 0) != flipped)) {
+            if (!signbit(dot_of(&before, &here)) == (!signbit(dot) != flipped)) {
                 return;
             }
             number[k / 2] = kept;
