@@ -1,101 +1,12 @@
 /* draco_write.c: see draco_write.h. */
 #include "geom/draco_write.h"
 
+#include "base/bytes.h"
 #include "base/error.h"
 #include "geom/numbers.h"
-#include "geom/varint.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- what never changes */
-
-/* Each index's difference to the one before, with its sign in the lowest bit. */
-static uint16_t *make_index_symbols(const uint16_t *indices, size_t count)
-{
-    uint16_t *symbols = malloc(count * sizeof *symbols);
-    int before = 0;
-    for (size_t i = 0; symbols && i < count; i++) {
-        int difference = indices[i] - before;
-        symbols[i] = (uint16_t)(difference < 0 ? -2 * difference + 1 : 2 * difference);
-        before = indices[i];
-    }
-    return symbols;
-}
-
-static unsigned char *put_bytes(unsigned char *at, const void *bytes, size_t size)
-{
-    memcpy(at, bytes, size);
-    return at + size;
-}
-
-/* Header and counts; decoders count the bytes after it. */
-static unsigned char *put_counts(unsigned char *at, const draco_mesh *mesh)
-{
-    at = put_bytes(at, DRACO_HEADER, sizeof DRACO_HEADER);
-    return varint_put(varint_put(at, mesh->triangles), mesh->vertices);
-}
-
-/* Which attributes there are, and how the first one is predicted. */
-static unsigned char *put_attributes(unsigned char *at, draco_form form)
-{
-    if (form == DRACO_OFFSETS_TURNS) {
-        return put_bytes(put_bytes(at, DRACO_OFFSET_TURN, sizeof DRACO_OFFSET_TURN), DRACO_PLAIN, sizeof DRACO_PLAIN);
-    }
-    at = form == DRACO_POSITIONS ? put_bytes(at, DRACO_POSITION, sizeof DRACO_POSITION)
-                                 : put_bytes(at, DRACO_POSITION_TURN, sizeof DRACO_POSITION_TURN);
-    return put_bytes(at, DRACO_DIFFERENCES, sizeof DRACO_DIFFERENCES);
-}
-
-awt_status draco_mesh_make(uint32_t vertices, const uint16_t *indices, uint32_t triangles,
-                           const draco_attributes *attributes, draco_mesh *out, awt_error *error)
-{
-    enum { ALPHABET = 2 * DRACO_MESH_REACH + 2 };
-    const size_t count = 3 * (size_t)triangles, bound = symbols_bound(ALPHABET, count);
-    uint32_t counts[2 * ALPHABET];
-    uint16_t used[ALPHABET];
-    rans_entry entries[ALPHABET];
-    uint16_t *symbols = make_index_symbols(indices, count);
-    unsigned char *coded = malloc(bound);
-    draco_mesh mesh = {.vertices = vertices, .triangles = triangles};
-    mesh.attributes = attributes ? *attributes : (draco_attributes){.form = DRACO_POSITIONS};
-    mesh.head = malloc(bound + DRACO_AROUND_BYTES);
-    if (!symbols || !coded || !mesh.head) {
-        free(symbols);
-        free(coded);
-        free(mesh.head);
-        return error_set(error, AWT_NO_MEMORY, NULL);
-    }
-    symbols_run runs[RANS_LANES] = {{.scheme = SYMBOLS_RAW,
-                                     .symbols = symbols,
-                                     .count = count,
-                                     .alphabet = ALPHABET,
-                                     .counts = counts,
-                                     .used = used,
-                                     .entries = entries,
-                                     .bytes = coded}};
-    symbols_write(runs);
-    unsigned char *at = put_counts(mesh.head, &mesh);
-    mesh.least_size = (size_t)(at - mesh.head) + (size_t)triangles * DRACO_BYTES_A_TRIANGLE;
-    *at++ = DRACO_INDICES_COMPRESSED;
-    at = put_bytes(at, coded, runs[0].size);
-    at = put_attributes(at, mesh.attributes.form);
-    mesh.head_size = (size_t)(at - mesh.head);
-    free(symbols);
-    free(coded);
-    unsigned char *fitting = realloc(mesh.head, mesh.head_size);
-    mesh.head = fitting ? fitting : mesh.head;
-    *out = mesh;
-    return AWT_OK;
-}
-
-void draco_mesh_fini(draco_mesh *mesh)
-{
-    free(mesh->head);
-    *mesh = (draco_mesh){0};
-}
-
-/* ---- what does */
 
 enum { NUMBER_BITS = 15 }; /* of the symbols of 16-bit numbers */
 
@@ -276,33 +187,20 @@ void draco_writer_run(draco_writer *writer, const draco_box *box, const quantise
     }
 }
 
-static unsigned char *put_u32(unsigned char *at, uint32_t value)
-{
-    for (int k = 0; k < 4; k++) {
-        *at++ = (unsigned char)(value >> (8 * k));
-    }
-    return at;
-}
-
-static unsigned char *put_f32(unsigned char *at, float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return put_u32(at, bits);
-}
-
 static unsigned char *put_bounds(unsigned char *at, int32_t least, int32_t greatest)
 {
-    return put_u32(put_u32(at, (uint32_t)least), (uint32_t)greatest);
+    store_u32(at, (uint32_t)least);
+    store_u32(at + 4, (uint32_t)greatest);
+    return at + DRACO_BOUNDS_BYTES;
 }
 
 static unsigned char *put_turns(unsigned char *at, const draco_attributes *attributes, const symbols_run *run)
 {
     if (attributes->form == DRACO_OFFSETS_TURNS) {
-        return put_bytes(put_bytes(at, DRACO_PLAIN, sizeof DRACO_PLAIN), run->bytes, run->size);
+        return store_bytes(store_bytes(at, DRACO_PLAIN, sizeof DRACO_PLAIN), run->bytes, run->size);
     }
     const int32_t reach = 1 << (attributes->turn_bits - 1);
-    at = put_bytes(put_bytes(at, DRACO_DIFFERENCES, sizeof DRACO_DIFFERENCES), run->bytes, run->size);
+    at = store_bytes(store_bytes(at, DRACO_DIFFERENCES, sizeof DRACO_DIFFERENCES), run->bytes, run->size);
     return put_bounds(at, -reach, reach - 1);
 }
 
@@ -310,9 +208,9 @@ void draco_writer_put(const draco_writer *writer, const draco_box *box, const dr
                       unsigned char *out)
 {
     const draco_attributes *attributes = &job->mesh->attributes;
-    unsigned char *at = put_bytes(out, job->mesh->head, job->mesh->head_size);
+    unsigned char *at = store_bytes(out, job->mesh->head, job->mesh->head_size);
     const symbols_run *run = &writer->lanes[lane].run;
-    at = put_bytes(put_bytes(at, run->bytes, run->size), run->bits, run->bits_size);
+    at = store_bytes(store_bytes(at, run->bytes, run->size), run->bits, run->bits_size);
     if (attributes->form != DRACO_OFFSETS_TURNS) {
         at = put_bounds(at, 0, (1 << box->bits) - 1);
     }
@@ -321,10 +219,11 @@ void draco_writer_put(const draco_writer *writer, const draco_box *box, const dr
     }
     if (attributes->form != DRACO_OFFSETS_TURNS) {
         for (int k = 0; k < 3; k++) {
-            at = put_f32(at, box->origin[k]);
+            store_f32(at + 4 * k, box->origin[k]);
         }
-        at = put_f32(at, box->range);
-        *at++ = (unsigned char)box->bits;
+        store_f32(at + 12, box->range);
+        at[16] = (unsigned char)box->bits;
+        at += DRACO_BOX_BYTES;
     }
     memset(at, 0, job->size - (size_t)(at - out));
 }
