@@ -3,7 +3,7 @@
  * A receiver's strands are to lie within 0.2 mm of the server's. A position is off by 0.87 of its step at most, and a
  * turn moves a strand point by as much as its offset is long times 0.87 of the turn's step. Both at their worst and in
  * the same direction would be 0.23 mm with the limits below; over the clips of the four styles the worst point was
- * 0.163 mm off, the mean 0.034 to 0.066 (proto/GEOMETRY.md). */
+ * 0.167 mm off, the mean 0.034 to 0.066 (proto/GEOMETRY.md). */
 #include "geom/binding.h"
 
 #include "base/error.h"
