@@ -89,6 +89,23 @@ $(LIBAWT) $(LIBPROTO) $(LIBCLIENT) $(LIBSERVER):
 	@rm -f $@
 	$(Q)$(AR) rcs $@ $^
 
+# The receiver (core/geom/receive.h) for systems without POSIX: nothing but standard C may be in it.
+SRC_receiver := $(patsubst %,core/%.c,base/arena base/error geom/binding geom/draco_read geom/glb geom/glb_container \
+	geom/guides geom/json geom/json_number geom/lines geom/nodes_read geom/numbers geom/quantise geom/rans geom/receive geom/symbols_read geom/topology \
+	sim/evaluate) tests/node/receiver.c
+CFLAGS_receiver := -std=c17 -O2 -ffp-contract=off -fno-math-errno $(WARN) -Wmissing-prototypes -Icore
+EXPORTS_receiver := malloc free receiver_binding receiver_frame receiver_positions receiver_strands receiver_points \
+	receiver_error
+MINGW_CC ?= x86_64-w64-mingw32-gcc
+EMCC ?= emcc
+$(B)/receiver.dll: $(SRC_receiver) $(HEADERS)
+	@echo "  MINGW $@"
+	$(Q)$(MINGW_CC) $(CFLAGS_receiver) -Wno-float-conversion -shared -o $@ $(SRC_receiver)
+$(B)/receiver.wasm: $(SRC_receiver) $(HEADERS)
+	@echo "  EMCC $@"
+	$(Q)$(EMCC) $(CFLAGS_receiver) -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH \
+	-sEXPORTED_FUNCTIONS=$(subst $() ,$(,),$(addprefix _,$(EXPORTS_receiver))) -o $@ $(SRC_receiver)
+
 room = $(firstword $(subst /, ,$(1)))
 $(B)/obj/%.c.o: %.c $(B)/flags
 	@mkdir -p $(@D)

@@ -439,6 +439,18 @@ void awt_replay_destroy(awt_replay *replay);
  * centres [finest_nodes][3], frames [finest_nodes][4] (section frame to head frame; e_y along the wisp). */
 void awt_forest_guides(const awt_forest *forest, float *centres, float *frames);
 
+/* One active node of an AWT (§2.3). */
+typedef struct awt_node {
+    float position[3]; /* head frame */
+    float radius_m;
+    uint32_t level;  /* of its wisp, 0: coarsest */
+    uint32_t parent; /* number in the list, below its own; of a root: its own */
+} awt_node;
+
+/* The active nodes of all trees, tree by tree, into `out`, which has room for finest_nodes: there are never more.
+ * Returns how many. */
+uint32_t awt_forest_nodes(const awt_forest *forest, awt_node *out);
+
 /* Strand points [strand_count][points_per_strand][3] in the head frame, from the guides of the same groom.
  * `scratch` holds awt_groom_strand_scratch(groom) floats. */
 void awt_groom_strands(const awt_groom *groom, const float *centres, const float *frames, float *scratch,

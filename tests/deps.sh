@@ -30,6 +30,8 @@ if [ "$1" != run ]; then
     want nodejs has node
     want npm has npm
     want python3 has python3
+    want gcc-mingw-w64-x86-64 has x86_64-w64-mingw32-gcc
+    want emscripten has emcc
 fi
 if [ "$1" = soak ]; then
     want gcc-aarch64-linux-gnu has aarch64-linux-gnu-gcc

@@ -3,6 +3,7 @@
 #ifndef BASE_BYTES_H
 #define BASE_BYTES_H
 
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -81,6 +82,13 @@ static inline void store_f64(unsigned char *bytes, double value)
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     store_u64(bytes, bits);
+}
+
+/* Copies `size` bytes to `at` and returns where they end. */
+static inline unsigned char *store_bytes(unsigned char *at, const void *bytes, size_t size)
+{
+    memcpy(at, bytes, size);
+    return at + size;
 }
 
 #endif

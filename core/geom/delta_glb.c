@@ -132,14 +132,14 @@ static bool take_json(const json_document *json, size_t binary_size, delta_glb *
         return false;
     }
     out->size = length;
-    return glb_container_pose(json, node + 1, &out->head) && glb_container_time(json, &out->time_us);
+    return glb_read_pose(json, node + 1, &out->head) && glb_read_time(json, &out->time_us);
 }
 
 awt_status delta_glb_read(const void *bytes, size_t size, delta_glb *out, awt_error *error)
 {
     glb_chunk text_chunk, binary;
     json_document json = {0};
-    awt_status status = glb_container_read(bytes, size, &text_chunk, &binary, error);
+    awt_status status = glb_container_take(bytes, size, &text_chunk, &binary, error);
     if (status == AWT_OK) {
         status = json_read((const char *)text_chunk.bytes, text_chunk.size, &json, error);
     }

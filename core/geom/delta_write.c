@@ -8,6 +8,7 @@
 #include "geom/delta.h"
 #include "geom/delta_format.h"
 #include "geom/delta_glb.h"
+#include "geom/head_pose.h"
 #include "geom/layout.h"
 #include "geom/quantised.h"
 
@@ -191,7 +192,7 @@ awt_status geom_encode_delta(const geom_layout *layout, geom_scratch *scratch, c
     if (!e.scratch || !quantised_fits(def->base, layout) || !quantised_fits(def->now, layout)) {
         return error_set(error, AWT_BAD_VALUE, "the whole numbers are none of this layout's");
     }
-    awt_status status = layout_take_head(&def->head, &head, error);
+    awt_status status = head_pose_take(&def->head, &head, error);
     if (status == AWT_OK) {
         list_changed(&e);
         status = delta_glb_begin(&head, def->time_us, out, error);

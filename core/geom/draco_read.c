@@ -2,7 +2,7 @@
 #include "geom/draco_read.h"
 
 #include "base/error.h"
-#include "geom/draco_format.h"
+#include "geom/numbers.h"
 #include "geom/quantise.h"
 #include "geom/symbols.h"
 #include "geom/varint.h"
@@ -15,7 +15,8 @@ enum { INDEX_ALPHABET = 256 };
 #define BOX_REACH_M 1e6f /* no hair is farther away; what is nearer cannot add up to a number that is not finite */
 
 struct draco_reader {
-    uint16_t *symbols; /* [3][most of vertices and triangles] */
+    uint16_t *symbols; /* [3][most of vertices and triangles]; of triangles, then of positions */
+    uint16_t *numbers; /* as many; of numbers */
     symbols_tables tables;
 };
 
@@ -28,7 +29,7 @@ awt_status draco_reader_create(uint32_t most_vertices, uint32_t most_triangles, 
 {
     const size_t most = most_vertices > most_triangles ? most_vertices : most_triangles;
     draco_reader *reader = malloc(sizeof *reader);
-    uint16_t *symbols = malloc(3 * most * sizeof *symbols);
+    uint16_t *symbols = malloc(6 * most * sizeof *symbols);
     *out = NULL;
     if (!reader || !symbols) {
         free(reader);
@@ -36,6 +37,7 @@ awt_status draco_reader_create(uint32_t most_vertices, uint32_t most_triangles, 
         return error_set(error, AWT_NO_MEMORY, NULL);
     }
     reader->symbols = symbols;
+    reader->numbers = symbols + 3 * most;
     *out = reader;
     return AWT_OK;
 }
@@ -97,12 +99,23 @@ static float take_f32(cursor *c)
     return value;
 }
 
-static bool take_box(cursor *c, draco_box *box)
+/* The bounds of differences that wrap round. */
+static bool take_bounds(cursor *c, int32_t *least, int32_t *greatest)
 {
-    if (c->end - c->at < DRACO_TAIL_BYTES) {
+    if (c->end - c->at < DRACO_BOUNDS_BYTES) {
         return false;
     }
-    uint32_t least = take_u32(c), greatest = take_u32(c);
+    *least = (int32_t)take_u32(c);
+    *greatest = (int32_t)take_u32(c);
+    return true;
+}
+
+/* `greatest`: of the whole numbers that positions are. */
+static bool take_box(cursor *c, int32_t greatest, draco_box *box)
+{
+    if (c->end - c->at < DRACO_BOX_BYTES) {
+        return false;
+    }
     for (int k = 0; k < 3; k++) {
         box->origin[k] = take_f32(c);
     }
@@ -112,7 +125,7 @@ static bool take_box(cursor *c, draco_box *box)
     for (int k = 0; k < 3; k++) {
         sound = sound && fabsf(box->origin[k]) <= BOX_REACH_M;
     }
-    return sound && least == 0 && box->bits >= 1 && box->bits <= QUANTISE_MAX_BITS && greatest == (1u << box->bits) - 1;
+    return sound && box->bits >= 1 && box->bits <= QUANTISE_MAX_BITS && greatest == (1 << box->bits) - 1;
 }
 
 /* What follows makes the mesh as large as decoders ask for, and no larger. */
@@ -146,19 +159,77 @@ static bool fill_positions(const draco_box *box, uint16_t *symbols, size_t verti
     return all >> box->bits == 0;
 }
 
+static bool take_symbols(draco_reader *reader, cursor *c, uint16_t *symbols, uint32_t vertices)
+{
+    return symbols_read(&c->at, c->end, SYMBOLS_MAX_ALPHABET, &reader->tables, symbols, 3 * (size_t)vertices);
+}
+
+/* Header, counts and triangles; decoders count the bytes after the counts. */
+static bool take_mesh(draco_reader *reader, cursor *c, const uint16_t *indices, uint32_t vertices, uint32_t triangles,
+                      const unsigned char **after_counts)
+{
+    if (!take_exactly(c, DRACO_HEADER, sizeof DRACO_HEADER) || !take_count(c, triangles) || !take_count(c, vertices)) {
+        return false;
+    }
+    *after_counts = c->at;
+    return take_indices(reader, c, indices, triangles);
+}
+
 bool draco_read(draco_reader *reader, const void *bytes, size_t size, const uint16_t *indices, uint32_t vertices,
                 uint32_t triangles, float *positions)
 {
     cursor c = {.at = bytes, .end = (const unsigned char *)bytes + size};
+    const unsigned char *after_counts;
     draco_box box;
-    if (!take_exactly(&c, DRACO_HEADER, sizeof DRACO_HEADER) || !take_count(&c, triangles) ||
-        !take_count(&c, vertices)) {
+    int32_t least, greatest;
+    return take_mesh(reader, &c, indices, vertices, triangles, &after_counts) &&
+           take_exactly(&c, DRACO_POSITION, sizeof DRACO_POSITION) &&
+           take_exactly(&c, DRACO_DIFFERENCES, sizeof DRACO_DIFFERENCES) &&
+           take_symbols(reader, &c, reader->symbols, vertices) && take_bounds(&c, &least, &greatest) && least == 0 &&
+           take_box(&c, greatest, &box) && take_zeros(&c, after_counts, triangles) &&
+           fill_positions(&box, reader->symbols, vertices, positions);
+}
+
+/* ---- numbers */
+
+/* Differences of `bits` bits. */
+static bool take_turns(draco_reader *reader, cursor *c, int bits, uint32_t vertices, int16_t *turns)
+{
+    const int32_t reach = 1 << (bits - 1);
+    int32_t least, greatest;
+    return take_exactly(c, DRACO_DIFFERENCES, sizeof DRACO_DIFFERENCES) &&
+           take_symbols(reader, c, reader->numbers, vertices) && take_bounds(c, &least, &greatest) && least == -reach &&
+           greatest == reach - 1 && numbers_sum_up(bits, reader->numbers, vertices, turns);
+}
+
+static bool take_plain(draco_reader *reader, cursor *c, uint32_t vertices, int16_t *numbers)
+{
+    bool taken = take_exactly(c, DRACO_PLAIN, sizeof DRACO_PLAIN) && take_symbols(reader, c, reader->numbers, vertices);
+    if (taken) {
+        numbers_of_plain(reader->numbers, vertices, numbers);
+    }
+    return taken;
+}
+
+bool draco_read_numbers(draco_reader *reader, const draco_attributes *attributes, const void *bytes, size_t size,
+                        const uint16_t *indices, uint32_t vertices, uint32_t triangles, float *positions,
+                        int16_t *offsets, int16_t *turns)
+{
+    cursor c = {.at = bytes, .end = (const unsigned char *)bytes + size};
+    const unsigned char *after_counts;
+    draco_box box;
+    int32_t least, greatest;
+    if (!take_mesh(reader, &c, indices, vertices, triangles, &after_counts)) {
         return false;
     }
-    const unsigned char *after_counts = c.at;
-    return take_indices(reader, &c, indices, triangles) && take_exactly(&c, DRACO_POSITION, sizeof DRACO_POSITION) &&
+    if (attributes->form == DRACO_OFFSETS_TURNS) {
+        return take_exactly(&c, DRACO_OFFSET_TURN, sizeof DRACO_OFFSET_TURN) &&
+               take_plain(reader, &c, vertices, offsets) && take_plain(reader, &c, vertices, turns) &&
+               take_zeros(&c, after_counts, triangles);
+    }
+    return take_exactly(&c, DRACO_POSITION_TURN, sizeof DRACO_POSITION_TURN) &&
            take_exactly(&c, DRACO_DIFFERENCES, sizeof DRACO_DIFFERENCES) &&
-           symbols_read(&c.at, c.end, SYMBOLS_MAX_ALPHABET, &reader->tables, reader->symbols, 3 * (size_t)vertices) &&
-           take_box(&c, &box) && take_zeros(&c, after_counts, triangles) &&
-           fill_positions(&box, reader->symbols, vertices, positions);
+           take_symbols(reader, &c, reader->symbols, vertices) && take_bounds(&c, &least, &greatest) && least == 0 &&
+           take_turns(reader, &c, attributes->turn_bits, vertices, turns) && take_box(&c, greatest, &box) &&
+           take_zeros(&c, after_counts, triangles) && fill_positions(&box, reader->symbols, vertices, positions);
 }

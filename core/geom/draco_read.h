@@ -7,6 +7,7 @@
 #define GEOM_DRACO_READ_H
 
 #include "awt.h"
+#include "geom/draco_format.h"
 
 /* The memory of one reader. */
 typedef struct draco_reader draco_reader;
@@ -17,5 +18,11 @@ void draco_reader_destroy(draco_reader *reader);
  * [vertices][3] is filled with finite numbers. False: these bytes are not that, and `positions` may be half written. */
 bool draco_read(draco_reader *reader, const void *bytes, size_t size, const uint16_t *indices, uint32_t vertices,
                 uint32_t triangles, float *positions);
+
+/* The same of a mesh with numbers. Of `positions` and `offsets` [vertices][3] that which the form has is filled, the
+ * other is not touched; `turns` [vertices][3] hold numbers of `attributes`. */
+bool draco_read_numbers(draco_reader *reader, const draco_attributes *attributes, const void *bytes, size_t size,
+                        const uint16_t *indices, uint32_t vertices, uint32_t triangles, float *positions,
+                        int16_t *offsets, int16_t *turns);
 
 #endif

@@ -9,6 +9,8 @@
 #include "geom/delta_write.h"
 #include "geom/draco_shim.h"
 #include "geom/glb_template.h"
+#include "geom/guides.h"
+#include "geom/head_pose.h"
 #include "geom/layout.h"
 #include "geom/quantised.h"
 
@@ -17,8 +19,9 @@
 #include <string.h>
 
 struct geom_scratch {
-    draco_writer *writer;        /* NULL: stock encoder */
-    float *vertices[RANS_LANES]; /* of the largest patch each; NULL where points are taken as they are */
+    draco_writer *writer;         /* NULL: stock encoder */
+    float *vertices[RANS_LANES];  /* of the largest patch each; NULL where points are taken as they are */
+    int16_t *numbers[RANS_LANES]; /* of guides: turns [vertices][3], then offsets [vertices][3] */
     size_t held;
     delta_scratch *delta; /* NULL: of no kind that has deltas */
 };
@@ -46,9 +49,16 @@ awt_status geom_scratch_create(const geom_layout *layout, geom_scratch **out, aw
     scratch->held = sizeof *scratch;
     awt_status status = AWT_OK;
     if (!layout->stock) {
-        status = draco_writer_create(vertices, layout->box.bits, scheme, &scratch->writer, error);
+        status =
+            draco_writer_create(vertices, layout->box.bits, scheme, layout->attributes.form, &scratch->writer, error);
     }
-    const int copies = layout->stock ? 1 : layout->kind == GEOM_RIBBON ? RANS_LANES : 0;
+    for (int k = 0; k < RANS_LANES && layout->kind == GEOM_GUIDES && status == AWT_OK; k++) {
+        const size_t size = 6 * (size_t)vertices * sizeof(int16_t);
+        scratch->numbers[k] = malloc(size);
+        scratch->held += size;
+        status = scratch->numbers[k] ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
+    }
+    const int copies = layout->stock ? 1 : layout->kind == GEOM_STRANDS ? 0 : RANS_LANES;
     for (int k = 0; k < copies && status == AWT_OK; k++) {
         const size_t size = 3 * (size_t)vertices * sizeof(float);
         scratch->vertices[k] = malloc(size);
@@ -73,6 +83,7 @@ void geom_scratch_destroy(geom_scratch *scratch)
         delta_scratch_destroy(scratch->delta);
         for (int k = 0; k < RANS_LANES; k++) {
             free(scratch->vertices[k]);
+            free(scratch->numbers[k]);
         }
         free(scratch);
     }
@@ -93,8 +104,9 @@ delta_scratch *geom_scratch_delta(geom_scratch *scratch)
 
 static awt_status refuse_points(const encoding *e, const geom_patch *patch)
 {
-    return error_set(e->error, AWT_BAD_VALUE, "a strand point among strands %u to %u is not a finite number",
-                     patch->first_strand, patch->first_strand + patch->strands - 1);
+    return error_set(e->error, AWT_BAD_VALUE, "a point or frame among %s %u to %u is not a finite number",
+                     glb_words_of(e->layout->kind).lines, patch->first_strand,
+                     patch->first_strand + patch->strands - 1);
 }
 
 static const float *points_of(const encoding *e, const geom_patch *patch)
@@ -137,7 +149,7 @@ static awt_status put_patch(encoding *e, uint32_t index, const draco_job *job, i
         return status;
     }
     draco_writer_put(e->scratch->writer, &layout->box, job, lane, at);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3 && layout->attributes.form != DRACO_OFFSETS_TURNS; k++) {
         place.min[k] = draco_box_coordinate(&layout->box, k, job->found.least[k]);
         place.max[k] = draco_box_coordinate(&layout->box, k, job->found.greatest[k]);
     }
@@ -162,6 +174,41 @@ static bool is_kept(const encoding *e, uint32_t index)
     return e->def->unchanged && e->def->unchanged[index];
 }
 
+static bool all_finite(const float *values, size_t count)
+{
+    bool finite = true;
+    for (size_t i = 0; i < count; i++) {
+        finite = finite && isfinite(values[i]);
+    }
+    return finite;
+}
+
+/* Turns, and in bound frames the differences to what a reader expects. False: something is not finite. */
+static bool add_guides(encoding *e, const geom_patch *patch, int lane, draco_job *job)
+{
+    const geom_layout *layout = e->layout;
+    const guides_part part = {patch->first_strand, patch->strands};
+    const size_t nodes = layout_patch_vertices(layout, patch);
+    const float *frames = e->def->frames + 4 * (size_t)part.first_wisp * layout->points_per_strand;
+    int16_t *turns = e->scratch->numbers[lane], *offsets = turns + 3 * nodes;
+    const vec3 *centres = (const vec3 *)(const void *)job->positions;
+    if (!all_finite(frames, 4 * nodes) ||
+        !guides_turns(layout->binding, part, (const quat *)(const void *)frames, turns)) {
+        return false;
+    }
+    job->turns = turns;
+    if (layout->attributes.form == DRACO_OFFSETS_TURNS) {
+        if (!all_finite(job->positions, 3 * nodes)) {
+            return false;
+        }
+        job->found.finite = true;
+        job->offsets = offsets;
+        e->stats.clamped_points +=
+            guides_bind(layout->binding, part, centres, turns, offsets, (vec3 *)(void *)e->scratch->vertices[lane]);
+    }
+    return true;
+}
+
 static awt_status add_job(encoding *e, uint32_t index, window *w)
 {
     const geom_layout *layout = e->layout;
@@ -180,7 +227,12 @@ static awt_status add_job(encoding *e, uint32_t index, window *w)
         }
         points = vertices;
     }
-    w->jobs[w->count++] = (draco_job){.mesh = &layout->meshes[index], .positions = points};
+    draco_job *job = &w->jobs[w->count];
+    *job = (draco_job){.mesh = &layout->meshes[index], .positions = points};
+    if (layout->kind == GEOM_GUIDES && !add_guides(e, patch, w->count, job)) {
+        return refuse_points(e, patch);
+    }
+    w->count++;
     return AWT_OK;
 }
 
@@ -302,30 +354,15 @@ static awt_status encode_stock(encoding *e)
 
 /* ---- frames */
 
-awt_status layout_take_head(const awt_pose *head, awt_pose *out, awt_error *error)
-{
-    double square = 0;
-    for (int k = 0; k < 4; k++) {
-        square += head->orientation[k] * head->orientation[k];
-    }
-    double length = sqrt(square);
-    if (!isfinite(head->position[0]) || !isfinite(head->position[1]) || !isfinite(head->position[2]) ||
-        !(fabs(length - 1.0) <= 1e-3)) {
-        return error_set(error, AWT_BAD_VALUE, "the head's pose is not finite, or its orientation is not of length 1");
-    }
-    *out = *head;
-    for (int k = 0; k < 4; k++) {
-        out->orientation[k] = head->orientation[k] / length;
-    }
-    return AWT_OK;
-}
-
 awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const geom_frame_def *def, geom_buffer *out,
                        geom_frame_stats *stats, awt_error *error)
 {
     encoding e = {.layout = layout, .scratch = scratch, .def = def, .out = out, .error = error};
     awt_pose head;
-    awt_status status = layout_take_head(&def->head, &head, error);
+    awt_status status = head_pose_take(&def->head, &head, error);
+    if (status == AWT_OK && layout->kind == GEOM_GUIDES && !def->frames) {
+        status = error_set(error, AWT_BAD_VALUE, "guides have frames");
+    }
     if (status == AWT_OK && def->unchanged &&
         (layout->stock || !def->previous || !glb_template_made(&layout->frame, def->previous))) {
         status = error_set(error, AWT_BAD_VALUE, "the previous frame is none of this layout, or of the stock encoder");

@@ -36,8 +36,9 @@ typedef struct geom_layout geom_layout;
 
 typedef struct geom_layout_def {
     geom_kind kind;
-    int bits;   /* quantisation of positions, GEOM_LEAST_BITS .. GEOM_GREATEST_BITS; 0: the kind's own */
+    int bits;   /* quantisation of positions, GEOM_LEAST_BITS .. GEOM_GREATEST_BITS; 0: the kind's own. Guides: 0 */
     bool stock; /* libdraco's encoder, the reference, instead of our own: the same positions, much slower */
+    bool bound; /* guides: said against the binding (guides.h), a fifth of the bytes, and nothing without it */
 } geom_layout_def;
 
 /* Patches are whole wisp trees, in order, under GEOM_PATCH_POINTS. A tree that alone is too large is cut between
@@ -46,7 +47,8 @@ awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def
 void geom_layout_destroy(geom_layout *layout);
 uint32_t geom_layout_patches(const geom_layout *layout);
 
-/* The strands of patch number `index`: whoever knows which strands moved says so by patch. */
+/* The strands, of guides the finest wisps, of patch number `index`: whoever knows which strands moved says so by patch.
+ */
 typedef struct geom_patch {
     uint32_t first_strand, strands;
 } geom_patch;
@@ -64,7 +66,8 @@ typedef struct geom_quantised geom_quantised;
 
 /* What a frame is made of. */
 typedef struct geom_frame_def {
-    const float *points;             /* strand points [strands][points_per_strand][3], head frame */
+    const float *points; /* strand points [strands][points_per_strand][3], head frame; of guides section centres */
+    const float *frames; /* of guides section frames [finest_nodes][4], both as awt_forest_guides gives them */
     const geom_quantised *quantised; /* kind strands, own encoder: these, instead of points; else NULL */
     awt_pose head;                   /* becomes the glTF node's translation and rotation */
     int64_t time_us;                 /* goes into asset.extras */
@@ -79,15 +82,19 @@ typedef struct geom_frame_def {
 
 typedef struct geom_frame_stats {
     uint32_t vertices, triangles;
-    uint32_t clamped_points;  /* strand points outside the quantisation box, set onto it; of the patches encoded */
+    uint32_t clamped_points;  /* points outside the quantisation box, set onto it; of the patches encoded */
     uint32_t encoded_patches; /* the others were kept */
     double entropy_bits;      /* of the encoded positions: the least for a coder of single differences */
 } geom_frame_stats;
 
+/* Writes the binding that receivers of this groom's guides need (receive.h). *size is always set to the bytes needed;
+ * with `bytes` NULL nothing else happens. AWT_LIMIT where `capacity` is less; AWT_NO_MEMORY. */
+awt_status geom_binding_write(const awt_groom *groom, void *bytes, size_t capacity, size_t *size, awt_error *error);
+
 /* Writes a frame. The scene's node is named "hair" and carries extras {"kind", "strands", "points_per_strand",
- * "widths"} (widths: of a strand from root to tip, metres); every patch is a primitive with extras {"first_strand",
- * "strands"}. `out` is replaced. AWT_BAD_VALUE (a point or the pose is not finite; `previous` is no frame of this
- * layout), AWT_NO_MEMORY, AWT_LIMIT. */
+ * "widths"} (widths: of a strand from root to tip, metres), every patch is a primitive with extras {"first_strand",
+ * "strands"}; of guides proto/GEOMETRY.md says what they are. `out` is replaced. AWT_BAD_VALUE (a point or the pose is
+ * not finite; `previous` is no frame of this layout), AWT_NO_MEMORY, AWT_LIMIT. */
 awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const geom_frame_def *def, geom_buffer *out,
                        geom_frame_stats *stats, awt_error *error);
 
@@ -128,6 +135,11 @@ typedef struct geom_delta_def {
  * AWT_NO_MEMORY, AWT_LIMIT. */
 awt_status geom_encode_delta(const geom_layout *layout, geom_scratch *scratch, const geom_delta_def *def,
                              geom_buffer *out, geom_frame_stats *stats, awt_error *error);
+/* Writes a frame of kind nodes, the AWT itself, from nodes as awt_forest_nodes gives them: lines, a node to its parent,
+ * uncompressed (nodes.c). `out` is replaced. AWT_BAD_VALUE (no nodes; something is not finite),
+ * AWT_LIMIT, AWT_NO_MEMORY. */
+awt_status geom_encode_nodes(const awt_node *nodes, uint32_t count, const awt_pose *head, int64_t time_us,
+                             geom_buffer *out, awt_error *error);
 
 #ifdef __cplusplus
 }

@@ -1,17 +1,14 @@
-/* glb.c: see glb.h. The container first (glb_container.h), then the JSON (every index and count against
+/* glb.c: see glb.h. The container first (lengths against what is there), then the JSON (every index and count against
  * what they index and count), the geometry itself never: that is draco_shim.h's. */
 #include "geom/glb.h"
 
 #include "base/error.h"
 #include "geom/glb_container.h"
-#include "geom/json.h"
 #include "geom/topology.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-enum { GLB_TRIANGLES = 4, GLB_U16 = 5123, GLB_F32 = 5126 };
+enum { GLB_TRIANGLES = 4, GLB_I16 = 5122, GLB_U16 = 5123, GLB_F32 = 5126 };
 #define GLB_MAX_WIDTH 1e6 /* metres; that it fits a float */
 
 /* ---- JSON */
@@ -64,15 +61,38 @@ static bool whole_member_is(const glb_reader *r, uint32_t object, const char *me
 static bool read_kind(const glb_reader *r, uint32_t extras, glb_frame *out)
 {
     uint32_t kind = json_member(&r->json, extras, "kind");
-    out->kind = json_is_text(&r->json, kind, "strands") ? GEOM_STRANDS : GEOM_RIBBON;
-    return out->kind == GEOM_STRANDS || json_is_text(&r->json, kind, "ribbon");
+    for (int k = GEOM_RIBBON; k <= GEOM_GUIDES; k++) {
+        out->kind = (geom_kind)k;
+        if (json_is_text(&r->json, kind, glb_words_of(out->kind).kind)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Which binding guides belong to, and which of their two forms this is. */
+static bool read_binding(const glb_reader *r, uint32_t extras, glb_frame *out)
+{
+    uint32_t bits;
+    const bool bound = json_is_true(&r->json, json_member(&r->json, extras, "bound"));
+    if (!json_hexadecimal(&r->json, json_member(&r->json, extras, "binding"), &out->binding) ||
+        !whole_member(r, extras, "turn_bits", &bits) || bits < 2 || bits > DRACO_MAX_TURN_BITS) {
+        return false;
+    }
+    out->attributes.form = bound ? DRACO_OFFSETS_TURNS : DRACO_POSITIONS_TURNS;
+    out->attributes.turn_bits = (int)bits;
+    return true;
 }
 
 /* Strands first, for the counts of everything else follow from them. */
 static bool read_counts(const glb_reader *r, uint32_t extras, glb_frame *out)
 {
-    return read_kind(r, extras, out) && whole_member(r, extras, "strands", &out->strands) &&
-           whole_member(r, extras, "points_per_strand", &out->points_per_strand) && out->strands >= 1 &&
+    if (!read_kind(r, extras, out) || (out->kind == GEOM_GUIDES && !read_binding(r, extras, out))) {
+        return false;
+    }
+    const glb_words words = glb_words_of(out->kind);
+    return whole_member(r, extras, words.lines, &out->strands) &&
+           whole_member(r, extras, words.points, &out->points_per_strand) && out->strands >= 1 &&
            out->strands <= AWT_MAX_STRANDS && out->points_per_strand >= 2 &&
            out->points_per_strand <= AWT_MAX_POINTS_PER_STRAND &&
            (uint64_t)out->strands * out->points_per_strand <= AWT_MAX_POINTS;
@@ -114,14 +134,30 @@ static bool accessor_is(const glb_reader *r, uint32_t accessor, const char *type
            whole_member_is(r, accessor, "componentType", component) && whole_member_is(r, accessor, "count", count);
 }
 
+/* Attribute number `id` of the Draco data, called `name` in the JSON. */
+static bool read_attribute(const glb_reader *r, uint32_t attributes, uint32_t ids, const char *name, uint32_t id,
+                           uint32_t component, uint32_t vertices)
+{
+    return whole_member_is(r, ids, name, id) &&
+           accessor_is(r, item_of(r, &r->accessors, attributes, name), "VEC3", component, vertices);
+}
+
+static bool read_attributes(const glb_reader *r, uint32_t attributes, uint32_t ids, draco_form form, uint32_t vertices)
+{
+    bool first = form == DRACO_OFFSETS_TURNS ? read_attribute(r, attributes, ids, "_OFFSET", 0, GLB_I16, vertices)
+                                             : read_attribute(r, attributes, ids, "POSITION", 0, GLB_F32, vertices);
+    return first && (form == DRACO_POSITIONS || read_attribute(r, attributes, ids, "_TURN", 1, GLB_I16, vertices));
+}
+
 /* One primitive, whose strands must begin with number `first`. */
 static bool read_patch(const glb_reader *r, uint32_t primitive, const glb_frame *frame, uint32_t first,
                        glb_patch *patch)
 {
     const json_document *json = &r->json;
     const uint32_t a_point = topology_vertices_a_point(frame->kind);
+    const glb_words words = glb_words_of(frame->kind);
     uint32_t extras = json_member(json, primitive, "extras");
-    if (!whole_member_is(r, extras, "first_strand", first) || !whole_member(r, extras, "strands", &patch->strands) ||
+    if (!whole_member_is(r, extras, words.first, first) || !whole_member(r, extras, words.lines, &patch->strands) ||
         patch->strands < 1 || patch->strands > frame->strands - first ||
         patch->strands > GEOM_MAX_PATCH_VERTICES / (a_point * frame->points_per_strand)) {
         return false;
@@ -132,8 +168,8 @@ static bool read_patch(const glb_reader *r, uint32_t primitive, const glb_frame 
     uint32_t draco = json_member(json, json_member(json, primitive, "extensions"), "KHR_draco_mesh_compression");
     uint32_t attributes = json_member(json, primitive, "attributes");
     return whole_member_is(r, primitive, "mode", GLB_TRIANGLES) && read_data_place(r, draco, patch) &&
-           whole_member_is(r, json_member(json, draco, "attributes"), "POSITION", 0) &&
-           accessor_is(r, item_of(r, &r->accessors, attributes, "POSITION"), "VEC3", GLB_F32, patch->vertices) &&
+           read_attributes(r, attributes, json_member(json, draco, "attributes"), frame->attributes.form,
+                           patch->vertices) &&
            accessor_is(r, item_of(r, &r->accessors, primitive, "indices"), "SCALAR", GLB_U16, patch->triangles * 3) &&
            /* as libdraco does: no memory for triangles that the data cannot hold */
            patch->triangles <= patch->size / 3;
@@ -167,7 +203,7 @@ static awt_status read_frame(glb_reader *r, glb_frame *out, awt_error *error)
     }
     r->binary_size = buffer_size;
     uint32_t extras = json_member(json, node + 1, "extras");
-    if (!glb_container_pose(json, node + 1, &out->head) || !glb_container_time(json, &out->time_us) ||
+    if (!glb_read_pose(json, node + 1, &out->head) || !glb_read_time(json, &out->time_us) ||
         !read_counts(r, extras, out)) {
         return error_set(error, AWT_BAD_VALUE,
                          "the frame's head pose, time, kind or strand counts are missing or impossible");
@@ -176,7 +212,7 @@ static awt_status read_frame(glb_reader *r, glb_frame *out, awt_error *error)
     if (!out->widths) {
         return error_set(error, AWT_NO_MEMORY, NULL);
     }
-    if (!read_widths(r, extras, out)) {
+    if (out->kind != GEOM_GUIDES && !read_widths(r, extras, out)) {
         return error_set(error, AWT_BAD_VALUE, "the frame's widths are missing or impossible");
     }
     uint32_t primitives = json_member(json, mesh + 1, "primitives");
@@ -201,7 +237,7 @@ awt_status glb_read(const void *bytes, size_t size, glb_frame *out, awt_error *e
     glb_chunk text = {0}, binary = {0};
     glb_reader reader = {0};
     *out = (glb_frame){0};
-    awt_status status = glb_container_read(bytes, size, &text, &binary, error);
+    awt_status status = glb_container_take(bytes, size, &text, &binary, error);
     if (status != AWT_OK) {
         return status;
     }

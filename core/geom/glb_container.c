@@ -1,9 +1,8 @@
-/* glb_container.c: see glb_container.h. */
+/* glb_container.c: see glb_container.h. Lengths are compared with what is there. */
 #include "geom/glb_container.h"
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "geom/read.h"
 
 #include <math.h>
 
@@ -23,14 +22,15 @@ static awt_status take_chunk(const unsigned char *bytes, size_t size, size_t *at
     }
     uint32_t length = load_u32(bytes + *at);
     if (load_u32(bytes + *at + 4) != type || length % 4 != 0 || length > size - *at - GLB_CHUNK_HEADER) {
-        return error_set(error, AWT_BAD_FORMAT, "the frame's chunk at byte %zu is not what belongs there", *at);
+        return error_set(error, AWT_BAD_FORMAT, "the frame's chunk at byte %u is not what belongs there",
+                         (unsigned)*at);
     }
     *out = (glb_chunk){bytes + *at + GLB_CHUNK_HEADER, length};
     *at += GLB_CHUNK_HEADER + length;
     return AWT_OK;
 }
 
-awt_status glb_container_read(const unsigned char *bytes, size_t size, glb_chunk *json, glb_chunk *binary,
+awt_status glb_container_take(const unsigned char *bytes, size_t size, glb_chunk *json, glb_chunk *binary,
                               awt_error *error)
 {
     if (size > GEOM_MAX_GLB) {
@@ -43,7 +43,7 @@ awt_status glb_container_read(const unsigned char *bytes, size_t size, glb_chunk
         return error_set(error, AWT_BAD_FORMAT, "this is not a GLB 2.0 file");
     }
     if (load_u32(bytes + 8) > size) {
-        return error_set(error, AWT_TRUNCATED, "the frame ends at byte %zu of the %u it announces", size,
+        return error_set(error, AWT_TRUNCATED, "the frame ends at byte %u of the %u it announces", (unsigned)size,
                          load_u32(bytes + 8));
     }
     size_t at = GLB_HEADER;
@@ -57,7 +57,7 @@ awt_status glb_container_read(const unsigned char *bytes, size_t size, glb_chunk
     return status;
 }
 
-bool glb_container_pose(const json_document *json, uint32_t node, awt_pose *head)
+bool glb_read_pose(const json_document *json, uint32_t node, awt_pose *head)
 {
     double *q = head->orientation;
     if (!json_reals(json, json_member(json, node, "translation"), 3, head->position) ||
@@ -68,7 +68,7 @@ bool glb_container_pose(const json_document *json, uint32_t node, awt_pose *head
     return fabs(square - 1.0) < 1e-3;
 }
 
-bool glb_container_time(const json_document *json, int64_t *time_us)
+bool glb_read_time(const json_document *json, int64_t *time_us)
 {
     double time;
     uint32_t extras = json_member(json, json_member(json, 0, "asset"), "extras");

@@ -7,6 +7,7 @@
 #include <tiny_gltf.h>
 
 #include <charconv>
+#include <cstdio>
 #include <new>
 #include <ostream>
 #include <streambuf>
@@ -69,8 +70,10 @@ int add_accessor(tinygltf::Model *model, int type, int component_type, size_t co
     return static_cast<int>(model->accessors.size()) - 1;
 }
 
-void add_patch(tinygltf::Model *model, tinygltf::Mesh *mesh, const glb_patch &patch)
+void add_patch(tinygltf::Model *model, tinygltf::Mesh *mesh, const glb_frame &frame, const glb_patch &patch)
 {
+    const glb_words words = glb_words_of(frame.kind);
+    const draco_form form = frame.attributes.form;
     tinygltf::BufferView view;
     view.buffer = 0;
     view.byteOffset = patch.offset;
@@ -79,20 +82,35 @@ void add_patch(tinygltf::Model *model, tinygltf::Mesh *mesh, const glb_patch &pa
 
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    primitive.material = 0;
+    if (frame.kind != GEOM_GUIDES) {
+        primitive.material = 0;
+    }
     primitive.indices = add_accessor(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
                                      static_cast<size_t>(patch.triangles) * 3);
-    int position = add_accessor(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, patch.vertices);
-    model->accessors.back().minValues.assign(patch.min, patch.min + 3);
-    model->accessors.back().maxValues.assign(patch.max, patch.max + 3);
-    primitive.attributes["POSITION"] = position;
+    Members attributes;
+    if (form == DRACO_OFFSETS_TURNS) {
+        primitive.attributes["_OFFSET"] =
+            add_accessor(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_SHORT, patch.vertices);
+        attributes["_OFFSET"] = whole(0);
+    } else {
+        primitive.attributes["POSITION"] =
+            add_accessor(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, patch.vertices);
+        model->accessors.back().minValues.assign(patch.min, patch.min + 3);
+        model->accessors.back().maxValues.assign(patch.max, patch.max + 3);
+        attributes["POSITION"] = whole(0);
+    }
+    if (form != DRACO_POSITIONS) {
+        primitive.attributes["_TURN"] =
+            add_accessor(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_SHORT, patch.vertices);
+        attributes["_TURN"] = whole(1);
+    }
 
     Members draco;
     draco["bufferView"] = whole(static_cast<uint32_t>(model->bufferViews.size()) - 1);
-    draco["attributes"] = tinygltf::Value(Members{{"POSITION", whole(0)}});
+    draco["attributes"] = tinygltf::Value(attributes);
     primitive.extensions[DRACO_EXTENSION] = tinygltf::Value(draco);
     primitive.extras =
-        tinygltf::Value(Members{{"first_strand", whole(patch.first_strand)}, {"strands", whole(patch.strands)}});
+        tinygltf::Value(Members{{words.first, whole(patch.first_strand)}, {words.lines, whole(patch.strands)}});
     mesh->primitives.push_back(primitive);
 }
 
@@ -107,16 +125,29 @@ tinygltf::Material make_material()
     return material;
 }
 
+void place_node(tinygltf::Node *node, const awt_pose &head)
+{
+    node->name = "hair";
+    node->mesh = 0;
+    node->translation.assign(head.position, head.position + 3);
+    node->rotation.assign(head.orientation, head.orientation + 4);
+}
+
 tinygltf::Node make_node(const glb_frame &frame)
 {
     tinygltf::Node node;
-    node.name = "hair";
-    node.mesh = 0;
-    node.translation.assign(frame.head.position, frame.head.position + 3);
-    node.rotation.assign(frame.head.orientation, frame.head.orientation + 4);
-    Members extras{{"kind", tinygltf::Value(std::string(frame.kind == GEOM_RIBBON ? "ribbon" : "strands"))},
-                   {"strands", whole(frame.strands)},
-                   {"points_per_strand", whole(frame.points_per_strand)}};
+    place_node(&node, frame.head);
+    const glb_words words = glb_words_of(frame.kind);
+    Members extras{{"kind", tinygltf::Value(std::string(words.kind))},
+                   {words.lines, whole(frame.strands)},
+                   {words.points, whole(frame.points_per_strand)}};
+    if (frame.kind == GEOM_GUIDES) {
+        char binding[17];
+        std::snprintf(binding, sizeof binding, "%016llx", static_cast<unsigned long long>(frame.binding));
+        extras["binding"] = tinygltf::Value(std::string(binding));
+        extras["bound"] = tinygltf::Value(frame.attributes.form == DRACO_OFFSETS_TURNS);
+        extras["turn_bits"] = whole(static_cast<uint32_t>(frame.attributes.turn_bits));
+    }
     if (frame.widths) {
         tinygltf::Value::Array widths;
         for (uint32_t i = 0; i < frame.points_per_strand; i++) {
@@ -128,39 +159,95 @@ tinygltf::Node make_node(const glb_frame &frame)
     return node;
 }
 
-void fill_model(tinygltf::Model *model, const glb_frame &frame)
+/* Everything around one mesh of one node. */
+void fill_scene(tinygltf::Model *model, int64_t time_us, const unsigned char *binary, size_t binary_size)
 {
     model->asset.version = "2.0";
     model->asset.generator = "awtd";
     /* tinygltf's whole numbers have 32 bits; a double holds every microsecond of 285 years */
-    model->asset.extras = tinygltf::Value(Members{{"time_us", tinygltf::Value(static_cast<double>(frame.time_us))}});
-    model->extensionsUsed = {DRACO_EXTENSION};
-    model->extensionsRequired = {DRACO_EXTENSION};
-    model->materials = {make_material()};
-
-    tinygltf::Mesh mesh;
-    mesh.name = "hair";
-    for (uint32_t i = 0; i < frame.patch_count; i++) {
-        add_patch(model, &mesh, frame.patches[i]);
-    }
-    model->meshes = {mesh};
-    model->nodes = {make_node(frame)};
+    model->asset.extras = tinygltf::Value(Members{{"time_us", tinygltf::Value(static_cast<double>(time_us))}});
     tinygltf::Scene scene;
     scene.nodes = {0};
     model->scenes = {scene};
     model->defaultScene = 0;
-
     model->buffers.resize(1);
-    model->buffers[0].data.assign(frame.binary, frame.binary + frame.binary_size);
+    model->buffers[0].data.assign(binary, binary + binary_size);
 }
 
-} // namespace
+void fill_model(tinygltf::Model *model, const glb_frame &frame)
+{
+    fill_scene(model, frame.time_us, frame.binary, frame.binary_size);
+    model->extensionsUsed = {DRACO_EXTENSION};
+    model->extensionsRequired = {DRACO_EXTENSION};
+    if (frame.kind != GEOM_GUIDES) {
+        model->materials = {make_material()};
+    }
 
-awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *error)
+    tinygltf::Mesh mesh;
+    mesh.name = "hair";
+    for (uint32_t i = 0; i < frame.patch_count; i++) {
+        add_patch(model, &mesh, frame, frame.patches[i]);
+    }
+    model->meshes = {mesh};
+    model->nodes = {make_node(frame)};
+}
+
+/* An accessor of the records' values at byte `offset` of each. */
+int add_field(tinygltf::Model *model, int type, int component_type, size_t count, size_t offset)
+{
+    int index = add_accessor(model, type, component_type, count);
+    model->accessors.back().bufferView = 0;
+    model->accessors.back().byteOffset = offset;
+    return index;
+}
+
+void fill_lines(tinygltf::Model *model, const glb_lines &lines)
+{
+    fill_scene(model, lines.time_us, lines.binary, lines.binary_size);
+    tinygltf::BufferView records, indices;
+    records.buffer = indices.buffer = 0;
+    records.byteLength = lines.count * lines.stride;
+    records.byteStride = lines.stride;
+    records.target = TINYGLTF_TARGET_ARRAY_BUFFER;
+    indices.byteOffset = records.byteLength;
+    indices.byteLength = static_cast<size_t>(lines.count) * 8;
+    indices.target = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
+    model->bufferViews = {records, indices};
+
+    tinygltf::Primitive primitive;
+    primitive.mode = TINYGLTF_MODE_LINE;
+    primitive.attributes["POSITION"] =
+        add_field(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, lines.count, 0);
+    model->accessors.back().minValues.assign(lines.min, lines.min + 3);
+    model->accessors.back().maxValues.assign(lines.max, lines.max + 3);
+    primitive.attributes["_RADIUS"] =
+        add_field(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT, lines.count, 12);
+    primitive.attributes["_PARENT"] =
+        add_field(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT, lines.count, 16);
+    primitive.attributes["_LEVEL"] =
+        add_field(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, lines.count, 20);
+    primitive.indices = add_accessor(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                                     static_cast<size_t>(lines.count) * 2);
+    model->accessors.back().bufferView = 1;
+
+    tinygltf::Mesh mesh;
+    mesh.name = "hair";
+    mesh.primitives = {primitive};
+    model->meshes = {mesh};
+    tinygltf::Node node;
+    place_node(&node, lines.head);
+    node.extras =
+        tinygltf::Value(Members{{"kind", tinygltf::Value(std::string("nodes"))}, {"nodes", whole(lines.count)}});
+    model->nodes = {node};
+}
+
+template <typename Frame>
+awt_status write_model(void (*fill)(tinygltf::Model *, const Frame &), const Frame &frame, geom_buffer *out,
+                       awt_error *error)
 {
     try {
         tinygltf::Model model;
-        fill_model(&model, *frame);
+        fill(&model, frame);
         BufferSink sink(out, error);
         std::ostream stream(&sink);
         tinygltf::TinyGLTF writer;
@@ -176,14 +263,20 @@ awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *e
     }
 }
 
+} // namespace
+
+awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *error)
+{
+    return write_model(fill_model, *frame, out, error);
+}
+
+awt_status glb_shim_write_lines(const glb_lines *lines, geom_buffer *out, awt_error *error)
+{
+    return write_model(fill_lines, *lines, out, error);
+}
+
 size_t glb_shim_print(double value, char *text, size_t size)
 {
     std::to_chars_result result = std::to_chars(text, text + size, value);
     return static_cast<size_t>(result.ptr - text);
-}
-
-bool glb_shim_number(const char *begin, const char *end, double *out)
-{
-    std::from_chars_result result = std::from_chars(begin, end, *out);
-    return result.ec == std::errc() && result.ptr == end;
 }

@@ -3,6 +3,7 @@
 #ifndef GEOM_GLB_SHIM_H
 #define GEOM_GLB_SHIM_H
 
+#include "geom/draco_format.h"
 #include "geom/encode.h"
 
 #ifdef __cplusplus
@@ -17,11 +18,30 @@ typedef struct glb_patch {
     size_t offset, size;  /* its Draco data in the binary chunk */
 } glb_patch;
 
+/* What frames of a kind call their lines, the points of a line, and a patch's first line. */
+typedef struct glb_words {
+    const char *kind, *lines, *points, *first;
+} glb_words;
+
+static inline glb_words glb_words_of(geom_kind kind)
+{
+    glb_words words = {"ribbon", "strands", "points_per_strand", "first_strand"};
+    if (kind == GEOM_STRANDS) {
+        words.kind = "strands";
+    }
+    if (kind == GEOM_GUIDES) {
+        words.kind = "guides", words.lines = "wisps", words.points = "sections", words.first = "first_wisp";
+    }
+    return words;
+}
+
 /* What a GLB of ours says. */
 typedef struct glb_frame {
     geom_kind kind;
-    uint32_t strands, points_per_strand;
-    glb_patch *patches; /* [patch_count] */
+    uint32_t strands, points_per_strand; /* of guides: wisps, and sections of each */
+    draco_attributes attributes;         /* of its meshes */
+    uint64_t binding;                    /* guides: which one (binding.h) */
+    glb_patch *patches;                  /* [patch_count] */
     uint32_t patch_count;
     const unsigned char *binary; /* [binary_size], the binary chunk */
     size_t binary_size;
@@ -33,13 +53,22 @@ typedef struct glb_frame {
 /* Appends the frame as a GLB. AWT_NO_MEMORY, AWT_LIMIT. */
 awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *error);
 
+/* A tree of nodes as lines, uncompressed (nodes.c). */
+typedef struct glb_lines {
+    uint32_t count;              /* nodes */
+    const unsigned char *binary; /* [binary_size]: records [count] of `stride` bytes, then indices u32 [count][2] */
+    size_t binary_size, stride;
+    float min[3], max[3]; /* of the positions */
+    awt_pose head;
+    int64_t time_us;
+} glb_lines;
+
+/* Appends the nodes as a GLB. AWT_NO_MEMORY, AWT_LIMIT. */
+awt_status glb_shim_write_lines(const glb_lines *lines, geom_buffer *out, awt_error *error);
+
 /* Writes the shortest text that reads as `value` again, exactly, into `text` [size]; returns its length. 24 characters
  * hold any finite number. */
 size_t glb_shim_print(double value, char *text, size_t size);
-
-/* Reads a JSON number that fills the text from `begin` to `end`, whatever decimal point the host program's locale
- * asks of strtod. False: it is none. */
-bool glb_shim_number(const char *begin, const char *end, double *out);
 
 #ifdef __cplusplus
 }

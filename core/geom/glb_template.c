@@ -60,23 +60,29 @@ static void find_numbers(finder *f, uint32_t array, uint32_t count, uint32_t fie
     }
 }
 
-static void find_patches(finder *f, uint32_t patch_count)
+/* Each patch's accessors: indices, positions or offsets, turns if any. */
+static void find_patches(finder *f, draco_form form, uint32_t patch_count)
 {
     const json_document *json = &f->json;
     uint32_t views = json_member(json, 0, "bufferViews"), accessors = json_member(json, 0, "accessors");
-    f->missing = f->missing || json_items(json, views) != patch_count || json_items(json, accessors) != 2 * patch_count;
+    const uint32_t a_patch = form == DRACO_POSITIONS ? 2 : 3;
+    f->missing =
+        f->missing || json_items(json, views) != patch_count || json_items(json, accessors) != a_patch * patch_count;
     for (uint32_t i = 0, view = views + 1, accessor = accessors + 1; i < patch_count && !f->missing; i++) {
-        uint32_t position = json->tokens[accessor].after; /* indices, then positions, of each patch */
+        uint32_t position = json->tokens[accessor].after;
         find_number(f, json_member(json, view, "byteOffset"), WHOLE_WIDTH, patch_field(i, PATCH_OFFSET));
         find_number(f, json_member(json, view, "byteLength"), WHOLE_WIDTH, patch_field(i, PATCH_SIZE));
-        find_numbers(f, json_member(json, position, "min"), 3, patch_field(i, PATCH_MIN));
-        find_numbers(f, json_member(json, position, "max"), 3, patch_field(i, PATCH_MAX));
+        if (form != DRACO_OFFSETS_TURNS) {
+            find_numbers(f, json_member(json, position, "min"), 3, patch_field(i, PATCH_MIN));
+            find_numbers(f, json_member(json, position, "max"), 3, patch_field(i, PATCH_MAX));
+        }
         view = json->tokens[view].after;
         accessor = json->tokens[position].after;
+        accessor = form != DRACO_POSITIONS && !f->missing ? json->tokens[accessor].after : accessor;
     }
 }
 
-static void find_all(finder *f, uint32_t patch_count)
+static void find_all(finder *f, draco_form form, uint32_t patch_count)
 {
     const json_document *json = &f->json;
     uint32_t asset = json_member(json, 0, "asset"), node = json_member(json, 0, "nodes") + 1;
@@ -85,7 +91,7 @@ static void find_all(finder *f, uint32_t patch_count)
     find_numbers(f, json_member(json, node, "translation"), 3, FIELD_POSITION);
     find_numbers(f, json_member(json, node, "rotation"), 4, FIELD_ORIENTATION);
     find_number(f, json_member(json, buffer, "byteLength"), WHOLE_WIDTH, FIELD_BUFFER);
-    find_patches(f, patch_count);
+    find_patches(f, form, patch_count);
 }
 
 static int by_place(const void *a, const void *b)
@@ -168,7 +174,7 @@ awt_status glb_template_make(const glb_frame *frame, glb_template *out, awt_erro
                         (uint32_t)sample.bytes[GLB_HEADER + 2] << 16 | (uint32_t)sample.bytes[GLB_HEADER + 3] << 24;
         status = json_read((const char *)sample.bytes + GLB_HEADER + GLB_CHUNK_HEADER, size, &f.json, error);
         if (status == AWT_OK) {
-            find_all(&f, frame->patch_count);
+            find_all(&f, frame->attributes.form, frame->patch_count);
             status = f.missing ? AWT_BAD_VALUE : AWT_OK;
         }
         if (status == AWT_OK) {
@@ -251,7 +257,7 @@ void glb_template_place(const glb_template *t, uint32_t index, const glb_patch *
 void glb_template_patch(const glb_template *t, uint32_t index, const glb_patch *patch, geom_buffer *out)
 {
     glb_template_place(t, index, patch, out);
-    for (uint32_t k = 0; k < 3; k++) {
+    for (uint32_t k = 0; k < 3 && t->fields[patch_field(index, PATCH_MIN)] != 0; k++) {
         put_real(out->bytes + t->fields[patch_field(index, PATCH_MIN + k)], (double)patch->min[k]);
         put_real(out->bytes + t->fields[patch_field(index, PATCH_MAX + k)], (double)patch->max[k]);
     }
@@ -297,7 +303,7 @@ bool glb_template_keep(const glb_template *t, uint32_t index, const geom_buffer 
     place->size = take_whole(from->bytes + t->fields[patch_field(index, PATCH_SIZE)]);
     for (uint32_t k = PATCH_MIN; k < PATCH_FIELDS; k++) {
         const size_t field = t->fields[patch_field(index, k)];
-        memcpy(out->bytes + field, from->bytes + field, REAL_WIDTH);
+        memcpy(out->bytes + field, from->bytes + field, field ? REAL_WIDTH : 0);
     }
     return place->offset <= binary && place->size <= binary - place->offset;
 }

@@ -9,7 +9,7 @@ typedef struct glb_template {
     unsigned char *bytes; /* [size]: the file up to the binary chunk's first byte, fields empty; heap */
     size_t size;
     uint32_t patch_count;
-    uint32_t *fields; /* where each field begins; heap */
+    uint32_t *fields; /* where each field begins, 0: there is none; heap */
 } glb_template;
 
 /* Makes the template of frames that have `frame`'s counts, kind and widths; its pose, time, bounds and places do not
@@ -22,7 +22,7 @@ awt_status glb_template_begin(const glb_template *t, const awt_pose *head, int64
                               awt_error *error);
 /* Says where patch number `index` is in the binary chunk. */
 void glb_template_place(const glb_template *t, uint32_t index, const glb_patch *patch, geom_buffer *out);
-/* The same, and its bounds. */
+/* The same, and its bounds, where it has positions. */
 void glb_template_patch(const glb_template *t, uint32_t index, const glb_patch *patch, geom_buffer *out);
 /* Writes the lengths, when all patches are there. */
 void glb_template_end(const glb_template *t, geom_buffer *out);

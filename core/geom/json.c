@@ -2,7 +2,7 @@
 #include "geom/json.h"
 
 #include "base/error.h"
-#include "geom/glb_shim.h"
+#include "geom/json_number.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -172,8 +172,9 @@ awt_status json_read(const char *text, size_t size, json_document *out, awt_erro
     json_fini(out);
     return reader.status == AWT_NO_MEMORY
                ? error_set(error, AWT_NO_MEMORY, NULL)
-               : error_set(error, reader.status, "the frame's JSON is %s at byte %zu of %zu",
-                           reader.status == AWT_LIMIT ? "larger than any frame's" : "damaged", reader.at, size);
+               : error_set(error, reader.status, "the frame's JSON is %s at byte %u of %u",
+                           reader.status == AWT_LIMIT ? "larger than any frame's" : "damaged", (unsigned)reader.at,
+                           (unsigned)size);
 }
 
 void json_fini(json_document *document)
@@ -192,6 +193,28 @@ bool json_is_text(const json_document *d, uint32_t value, const char *text)
     size_t length = strlen(text);
     return is_kind(d, value, JSON_STRING) && d->tokens[value].end - d->tokens[value].begin == length &&
            memcmp(d->text + d->tokens[value].begin, text, length) == 0;
+}
+
+bool json_is_true(const json_document *d, uint32_t value)
+{
+    return is_kind(d, value, JSON_LITERAL) && d->text[d->tokens[value].begin] == 't';
+}
+
+bool json_hexadecimal(const json_document *d, uint32_t value, uint64_t *out)
+{
+    static const char digits[] = "0123456789abcdef";
+    if (!is_kind(d, value, JSON_STRING) || d->tokens[value].end - d->tokens[value].begin != 16) {
+        return false;
+    }
+    *out = 0;
+    for (uint32_t at = d->tokens[value].begin; at < d->tokens[value].end; at++) {
+        const char *digit = strchr(digits, d->text[at]);
+        if (!digit || !*digit) {
+            return false;
+        }
+        *out = *out << 4 | (uint64_t)(digit - digits);
+    }
+    return true;
 }
 
 uint32_t json_member(const json_document *d, uint32_t object, const char *name)
@@ -215,7 +238,7 @@ uint32_t json_items(const json_document *d, uint32_t array)
 bool json_real(const json_document *d, uint32_t value, double *out)
 {
     return is_kind(d, value, JSON_NUMBER) &&
-           glb_shim_number(d->text + d->tokens[value].begin, d->text + d->tokens[value].end, out) && isfinite(*out);
+           json_number(d->text + d->tokens[value].begin, d->text + d->tokens[value].end, out);
 }
 
 bool json_whole(const json_document *d, uint32_t value, uint32_t *out)

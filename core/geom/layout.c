@@ -7,69 +7,16 @@
 
 #include "base/assert.h"
 #include "base/error.h"
+#include "geom/measure.h"
 #include "geom/topology.h"
 #include "groom/groom.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-/* Full width of a ribbon at its middle, for AWT_DEFAULT_STRANDS strands on a head of AWT_HEAD_RADIUS_M: a ribbon
- * stands for the dozen hairs that a real head has for each of ours. Fewer strands are wider, so that the hair covers
- * the same part of the head, though no wider than a lock. */
-#define WIDTH_M 0.0016f
-#define WIDTH_GREATEST_M 0.005f
-/* A ribbon narrower than this many quantisation steps loses its shape (STREAM.md, traps). */
-#define WIDTH_LEAST_STEPS 4.0f
-/* Draco's stock encoder takes origin and range as text of six decimals; multiples of 1/64 pass through unchanged. */
-#define BOX_GRID 64.0f
-
-/* Share of the middle width at t in [0, 1] from root to tip. */
-static float width_profile(float t)
+/* Number of the first strand, of guides the wisp itself, of finest wisp `g`. */
+static uint32_t first_line(const geom_layout *layout, const awt_groom *groom, uint32_t g)
 {
-    if (t < 0.15f) {
-        return 0.7f + 2.0f * t;
-    }
-    if (t < 0.5f) {
-        return 1.0f;
-    }
-    float u = (t - 0.5f) * 2.0f;
-    return 1.0f - 0.9f * u * u;
-}
-
-static float middle_half_width(const awt_groom_info *info)
-{
-    float head = (float)(info->head_radius_m / AWT_HEAD_RADIUS_M);
-    float density = sqrtf((float)AWT_DEFAULT_STRANDS / (float)info->strand_count);
-    float width = WIDTH_M * head * density;
-    float greatest = WIDTH_GREATEST_M * head;
-    return 0.5f * (width < greatest ? width : greatest);
-}
-
-/* The groom's box, made a cube, with room for half a ribbon around it. */
-static draco_box make_box(const awt_groom_info *info, float half_width, int bits)
-{
-    draco_box box = {.bits = bits};
-    float widest = 0;
-    for (int k = 0; k < 3; k++) {
-        float extent = info->box_max[k] - info->box_min[k];
-        widest = extent > widest ? extent : widest;
-    }
-    float margin = half_width + (widest + 2 * half_width + 1.0f / BOX_GRID) * (WIDTH_LEAST_STEPS / (float)(1 << bits));
-    for (int k = 0; k < 3; k++) {
-        box.origin[k] = floorf((info->box_min[k] - margin) * BOX_GRID) / BOX_GRID;
-        float extent = ceilf((info->box_max[k] + margin - box.origin[k]) * BOX_GRID) / BOX_GRID;
-        box.range = extent > box.range ? extent : box.range;
-    }
-    return box;
-}
-
-static void fill_widths(geom_layout *layout, float middle)
-{
-    float least = layout->kind == GEOM_RIBBON ? 0.5f * WIDTH_LEAST_STEPS * draco_box_step(&layout->box) : 0;
-    for (uint32_t i = 0; i < layout->points_per_strand; i++) {
-        float half = middle * width_profile((float)i / (float)(layout->points_per_strand - 1));
-        layout->half_width[i] = half > least ? half : least;
-    }
+    return layout->kind == GEOM_GUIDES ? g : groom->gc_strand_first[g];
 }
 
 /* Adds `strands` to the last patch, or opens a new one where they do not fit. */
@@ -92,8 +39,8 @@ static void fill_patches(geom_layout *layout, const awt_groom *groom, uint32_t r
         while (after < finest && tree[after] == tree[g]) {
             after++;
         }
-        uint32_t strand = groom->gc_strand_first[g];
-        for (uint32_t left = groom->gc_strand_first[after] - strand; left > 0;) {
+        uint32_t strand = first_line(layout, groom, g);
+        for (uint32_t left = first_line(layout, groom, after) - strand; left > 0;) {
             uint32_t taken = left < room ? left : room;
             add_strands(layout, strand, taken, room);
             strand += taken;
@@ -116,6 +63,12 @@ static awt_status check_counts(const awt_groom_info *info, const geom_layout_def
         return error_set(error, AWT_LIMIT, "a frame holds 1 to %d strands of 2 to %d points, not %u of %u",
                          AWT_MAX_STRANDS, AWT_MAX_POINTS_PER_STRAND, info->strand_count, info->points_per_strand);
     }
+    if (def->kind > GEOM_GUIDES) {
+        return error_set(error, AWT_BAD_VALUE, "frames of nodes have no layout");
+    }
+    if (def->kind == GEOM_GUIDES && (def->bits != 0 || def->stock)) {
+        return error_set(error, AWT_BAD_VALUE, "guides have the bits of their binding, and no stock encoder");
+    }
     if (def->bits != 0 && (def->bits < GEOM_LEAST_BITS || def->bits > GEOM_GREATEST_BITS)) {
         return error_set(error, AWT_BAD_VALUE, "positions are quantised to %d to %d bits, not %d", GEOM_LEAST_BITS,
                          GEOM_GREATEST_BITS, def->bits);
@@ -127,9 +80,11 @@ static awt_status check_counts(const awt_groom_info *info, const geom_layout_def
 static void fill_shape(geom_layout *layout, const awt_groom_info *info, int bits)
 {
     const bool ribbon = layout->kind == GEOM_RIBBON;
-    const float middle = middle_half_width(info);
-    layout->box = make_box(info, ribbon ? middle : 0, bits ? bits : ribbon ? GEOM_RIBBON_BITS : GEOM_STRANDS_BITS);
-    fill_widths(layout, middle);
+    layout->box = measure_box(info, ribbon ? measure_middle(info) : 0, bits);
+    if (layout->half_width) {
+        float least = ribbon ? 0.5f * MEASURE_LEAST_STEPS * draco_box_step(&layout->box) : 0;
+        measure_half_widths(info, least, layout->half_width);
+    }
     layout->shape = (ribbon_shape){.points_per_strand = layout->points_per_strand, .half_width = layout->half_width};
     for (int k = 0; k < 3; k++) {
         layout->shape.point_min[k] = info->box_min[k];
@@ -137,6 +92,34 @@ static void fill_shape(geom_layout *layout, const awt_groom_info *info, int bits
         layout->bounds.least[k] = ribbon ? layout->box.origin[k] : info->box_min[k];
         layout->bounds.greatest[k] = ribbon ? layout->box.origin[k] + layout->box.range : info->box_max[k];
     }
+}
+
+/* Lines, and what says them: strands with their widths, or wisps with their binding. */
+static awt_status take_lines(geom_layout *layout, const awt_groom *groom, const geom_layout_def *def, awt_error *error)
+{
+    const awt_groom_info *info = &groom->info;
+    const int usual = def->kind == GEOM_RIBBON ? GEOM_RIBBON_BITS : GEOM_STRANDS_BITS;
+    if (def->kind == GEOM_GUIDES) {
+        awt_status status = binding_of_groom(groom, &layout->binding, error);
+        if (status == AWT_OK) {
+            free(layout->binding->packed); /* the largest of it, and of no use here */
+            layout->binding->packed = NULL;
+            layout->attributes.form = def->bound ? DRACO_OFFSETS_TURNS : DRACO_POSITIONS_TURNS;
+            layout->attributes.turn_bits = (int)layout->binding->turn_bits;
+            layout->strands = layout->binding->wisps;
+            layout->points_per_strand = layout->binding->sections;
+            fill_shape(layout, info, (int)layout->binding->position_bits);
+        }
+        return status;
+    }
+    layout->strands = info->strand_count;
+    layout->points_per_strand = info->points_per_strand;
+    layout->half_width = calloc(info->points_per_strand, sizeof *layout->half_width);
+    if (!layout->half_width) {
+        return error_set(error, AWT_NO_MEMORY, NULL);
+    }
+    fill_shape(layout, info, def->bits ? def->bits : usual);
+    return AWT_OK;
 }
 
 static bool make_arrays(geom_layout *layout, const awt_groom *groom)
@@ -170,7 +153,7 @@ static awt_status make_meshes(geom_layout *layout, awt_error *error)
         const geom_patch *patch = &layout->patches[i];
         status = draco_mesh_make(layout_patch_vertices(layout, patch), layout->indices,
                                  topology_triangles(layout->kind, patch->strands, layout->points_per_strand),
-                                 &layout->meshes[i], error);
+                                 &layout->attributes, &layout->meshes[i], error);
     }
     return status;
 }
@@ -180,18 +163,20 @@ static awt_status make_template(geom_layout *layout, awt_error *error)
     glb_frame frame = {.kind = layout->kind,
                        .strands = layout->strands,
                        .points_per_strand = layout->points_per_strand,
+                       .attributes = layout->attributes,
+                       .binding = layout->binding ? layout->binding->id : 0,
                        .patches = calloc(layout->patch_count, sizeof *frame.patches),
                        .patch_count = layout->patch_count,
-                       .widths = calloc(layout->points_per_strand, sizeof *frame.widths)};
+                       .widths = layout->half_width ? calloc(layout->points_per_strand, sizeof *frame.widths) : NULL};
     awt_status status = AWT_NO_MEMORY;
-    if (frame.patches && frame.widths) {
+    if (frame.patches && (frame.widths || !layout->half_width)) {
         for (uint32_t i = 0; i < layout->patch_count; i++) {
             frame.patches[i] = (glb_patch){.first_strand = layout->patches[i].first_strand,
                                            .strands = layout->patches[i].strands,
                                            .vertices = layout->meshes[i].vertices,
                                            .triangles = layout->meshes[i].triangles};
         }
-        for (uint32_t i = 0; i < layout->points_per_strand; i++) {
+        for (uint32_t i = 0; frame.widths && i < layout->points_per_strand; i++) {
             frame.widths[i] = 2 * layout->half_width[i];
         }
         status = glb_template_make(&frame, &layout->frame, error);
@@ -217,17 +202,11 @@ awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def
     }
     layout->kind = def->kind;
     layout->stock = def->stock;
-    layout->strands = info->strand_count;
-    layout->points_per_strand = info->points_per_strand;
-    layout->half_width = calloc(info->points_per_strand, sizeof *layout->half_width);
-    if (!layout->half_width) {
-        goto no_memory;
+    status = take_lines(layout, groom, def, error);
+    if (status == AWT_OK && !make_arrays(layout, groom)) {
+        status = error_set(error, AWT_NO_MEMORY, NULL);
     }
-    fill_shape(layout, info, def->bits);
-    if (!make_arrays(layout, groom)) {
-        goto no_memory;
-    }
-    status = make_meshes(layout, error);
+    status = status == AWT_OK ? make_meshes(layout, error) : status;
     status = status == AWT_OK ? make_template(layout, error) : status;
     if (status != AWT_OK) {
         geom_layout_destroy(layout);
@@ -235,9 +214,6 @@ awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def
     }
     *out = layout;
     return AWT_OK;
-no_memory:
-    geom_layout_destroy(layout);
-    return error_set(error, AWT_NO_MEMORY, NULL);
 }
 
 void geom_layout_destroy(geom_layout *layout)
@@ -247,6 +223,7 @@ void geom_layout_destroy(geom_layout *layout)
             draco_mesh_fini(&layout->meshes[i]);
         }
         glb_template_fini(&layout->frame);
+        geom_binding_destroy(layout->binding);
         free(layout->meshes);
         free(layout->half_width);
         free(layout->patches);

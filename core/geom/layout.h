@@ -2,6 +2,7 @@
 #ifndef GEOM_LAYOUT_H
 #define GEOM_LAYOUT_H
 
+#include "geom/binding.h"
 #include "geom/box.h"
 #include "geom/draco_write.h"
 #include "geom/encode.h"
@@ -11,9 +12,11 @@
 struct geom_layout {
     geom_kind kind;
     bool stock;
-    uint32_t strands, points_per_strand;
+    draco_attributes attributes;         /* of its meshes */
+    uint32_t strands, points_per_strand; /* of guides: finest wisps, and sections of each */
+    geom_binding *binding;               /* of guides; else NULL */
     ribbon_shape shape;
-    float *half_width;      /* [points_per_strand]; the shape's */
+    float *half_width;      /* [points_per_strand]; the shape's; of guides NULL */
     draco_box box;          /* one for all patches and all frames */
     quantise_bounds bounds; /* vertices are set onto them */
     geom_patch *patches;
@@ -28,8 +31,5 @@ static inline uint32_t layout_patch_vertices(const geom_layout *layout, const ge
 {
     return patch->strands * layout->points_per_strand * (layout->kind == GEOM_RIBBON ? 2 : 1);
 }
-
-/* Checks a pose; *out has a rotation of length 1 to the last bits, which glTF wants. AWT_BAD_VALUE. */
-awt_status layout_take_head(const awt_pose *head, awt_pose *out, awt_error *error);
 
 #endif

@@ -3,116 +3,18 @@
 #include "geom/read.h"
 
 #include "base/error.h"
-#include "geom/draco_read.h"
 #include "geom/draco_shim.h"
-#include "geom/glb.h"
-#include "geom/topology.h"
-
-#include <stdlib.h>
-
-static uint32_t largest_patch(const glb_frame *frame)
-{
-    uint32_t largest = 0;
-    for (uint32_t i = 0; i < frame->patch_count; i++) {
-        largest = frame->patches[i].strands > largest ? frame->patches[i].strands : largest;
-    }
-    return largest;
-}
-
-/* `vertices` of all patches, each at its strands' place. */
-static awt_status read_patches(const glb_frame *frame, draco_reader *reader, const uint16_t *indices, float *vertices,
-                               awt_error *error)
-{
-    const size_t a_strand = (size_t)frame->points_per_strand * topology_vertices_a_point(frame->kind) * 3;
-    awt_status status = AWT_OK;
-    for (uint32_t i = 0; i < frame->patch_count && status == AWT_OK; i++) {
-        const glb_patch *patch = &frame->patches[i];
-        const unsigned char *data = frame->binary + patch->offset;
-        float *here = vertices + patch->first_strand * a_strand;
-        if (!draco_read(reader, data, patch->size, indices, patch->vertices, patch->triangles, here)) {
-            status = draco_shim_decode(data, patch->size, indices, patch->vertices, patch->triangles, here, error);
-        }
-    }
-    return status;
-}
-
-static awt_status read_vertices(const glb_frame *frame, float *vertices, awt_error *error)
-{
-    const uint32_t per_strand = frame->points_per_strand, largest = largest_patch(frame);
-    const uint32_t triangles = topology_triangles(frame->kind, largest, per_strand);
-    draco_reader *reader = NULL;
-    uint16_t *indices = calloc(triangles, 3 * sizeof *indices);
-    awt_status status = indices ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
-    if (status == AWT_OK) {
-        topology_indices(frame->kind, largest, per_strand, indices);
-        status = draco_reader_create(largest * per_strand * topology_vertices_a_point(frame->kind), triangles, &reader,
-                                     error);
-    }
-    if (status == AWT_OK) {
-        status = read_patches(frame, reader, indices, vertices, error);
-    }
-    draco_reader_destroy(reader);
-    free(indices);
-    return status;
-}
-
-/* Centre lines: the mean of the two edges. */
-static void fill_positions(const float *vertices, size_t points, float *positions)
-{
-    for (size_t i = 0; i < points; i++) {
-        for (size_t k = 0; k < 3; k++) {
-            positions[3 * i + k] = 0.5f * vertices[6 * i + k] + 0.5f * vertices[6 * i + 3 + k];
-        }
-    }
-}
+#include "geom/lines.h"
 
 awt_status geom_read_frame(const void *bytes, size_t size, geom_strands *out, awt_error *error)
 {
     glb_frame frame;
-    geom_strands strands = {0};
     awt_status status = glb_read(bytes, size, &frame, error);
-    if (status != AWT_OK) {
-        return status;
+    if (status == AWT_OK && frame.kind == GEOM_GUIDES) {
+        status = error_set(error, AWT_BAD_VALUE, "this frame holds guides, which only their binding makes strands of");
+    } else if (status == AWT_OK) {
+        status = lines_read(&frame, draco_shim_decode, out, error);
     }
-    const size_t points = (size_t)frame.strands * frame.points_per_strand;
-    const bool ribbon = frame.kind == GEOM_RIBBON;
-    strands = (geom_strands){.kind = frame.kind,
-                             .strand_count = frame.strands,
-                             .points_per_strand = frame.points_per_strand,
-                             .positions = calloc(points, 3 * sizeof(float)),
-                             .vertices = ribbon ? calloc(points, 6 * sizeof(float)) : NULL,
-                             .patch_count = frame.patch_count,
-                             .head = frame.head,
-                             .time_us = frame.time_us};
-    if (!strands.positions || (ribbon && !strands.vertices)) {
-        status = error_set(error, AWT_NO_MEMORY, NULL);
-        goto fail;
-    }
-    status = read_vertices(&frame, ribbon ? strands.vertices : strands.positions, error);
-    if (status != AWT_OK) {
-        goto fail;
-    }
-    if (ribbon) {
-        fill_positions(strands.vertices, points, strands.positions);
-    }
-    for (uint32_t i = 0; i < frame.patch_count; i++) {
-        strands.triangle_count += frame.patches[i].triangles;
-    }
-    strands.widths = frame.widths; /* the caller's now */
-    frame.widths = NULL;
-    *out = strands;
-    glb_frame_fini(&frame);
-    return AWT_OK;
-fail:
-    geom_strands_fini(&strands);
     glb_frame_fini(&frame);
     return status;
-}
-
-void geom_strands_fini(geom_strands *strands)
-{
-    free(strands->positions);
-    free(strands->vertices);
-    free(strands->widths);
-    *strands = (geom_strands){0};
 }

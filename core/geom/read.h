@@ -14,8 +14,10 @@ enum {
 
 /* What a frame holds, numbered as in QUERY. */
 typedef enum geom_kind {
-    GEOM_RIBBON = 0, /* a ribbon of triangles along each strand: for any viewer */
-    GEOM_STRANDS = 1 /* the strands' points, under triangles that only make them a mesh: for engines */
+    GEOM_RIBBON = 0,  /* a ribbon of triangles along each strand: for any viewer */
+    GEOM_STRANDS = 1, /* the strands' points, under triangles that only make them a mesh: for engines */
+    GEOM_GUIDES = 2,  /* cross-sections of the finest wisps: for who has the binding (receive.h) */
+    GEOM_NODES = 3    /* active AWT nodes: for overlays; without a layout (geom_encode_nodes) */
 } geom_kind;
 
 /* A frame read back, in the head frame. */
@@ -30,9 +32,9 @@ typedef struct geom_strands {
     int64_t time_us;
 } geom_strands;
 
-/* Reads a GLB that geom_encode wrote, of either kind and by either encoder, from a source that need not be trusted:
- * everything is checked against what is there before it is used. `out` is written on success only: geom_strands_fini.
- * AWT_BAD_FORMAT, AWT_TRUNCATED, AWT_BAD_VALUE, AWT_LIMIT, AWT_NO_MEMORY. */
+/* Reads a GLB that geom_encode wrote, of kind ribbon or strands and by either encoder, from a source that need not be
+ * trusted: everything is checked against what is there before it is used. `out` is written on success only:
+ * geom_strands_fini. AWT_BAD_FORMAT, AWT_TRUNCATED, AWT_BAD_VALUE, AWT_LIMIT, AWT_NO_MEMORY. */
 awt_status geom_read_frame(const void *bytes, size_t size, geom_strands *out, awt_error *error);
 void geom_strands_fini(geom_strands *strands);
 

@@ -1,8 +1,9 @@
 /* topology.h: the triangles of each kind of frame, which follow from the counts alone.
  *
- * `ribbon`: see ribbon.h. `strands`: the vertices are the strands' points, and a mesh has to have triangles: the fewest
- * that touch every point, three points in a row each, none across two strands; what is left over of a strand makes one
- * triangle more that repeats its last point. Each index is the one before it, or one more: connectivity costs nothing.
+ * `ribbon`: see ribbon.h. `strands`: the vertices are the strands' points (`guides`: the sections of wisps), and a mesh
+ * has to have triangles: the fewest that touch every point, three points in a row each, none across two strands; what
+ * is left over of a strand makes one triangle more that repeats its last point. Each index is the one before it, or one
+ * more: connectivity costs nothing.
  */
 #ifndef GEOM_TOPOLOGY_H
 #define GEOM_TOPOLOGY_H

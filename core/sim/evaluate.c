@@ -4,8 +4,6 @@
  * few strands, and every point costs nine products. */
 #include "sim/evaluate.h"
 
-#include "groom/groom.h"
-
 enum {
     RECORD = 8,  /* floats of a section or a station: a point, 0, a quaternion */
     SECTIONS = 4 /* that a station's curve is made of */
@@ -173,33 +171,28 @@ void evaluate_strands(const evaluate_table *table, const float *restrict offsets
     }
 }
 
-static void scratch_lay_out(const awt_groom *groom, evaluate_table *table, arena *memory)
-{
-    evaluate_lay_out(table, memory, groom->info.sections, groom->info.points_per_strand);
-}
-
-size_t awt_groom_strand_scratch(const awt_groom *groom)
+size_t evaluate_scratch(uint32_t sections, uint32_t points)
 {
     evaluate_table table;
     arena counting = arena_counting();
-    scratch_lay_out(groom, &table, &counting);
+    evaluate_lay_out(&table, &counting, sections, points);
     return (counting.used + ARENA_ALIGNMENT) / sizeof(float) + 1;
 }
 
-void awt_groom_strands(const awt_groom *groom, const float *centres, const float *frames, float *scratch, float *points)
+void evaluate_hair(const evaluate_binding *binding, const float *centres, const float *frames, float *scratch,
+                   float *points)
 {
-    const uint32_t sections = groom->info.sections;
-    const size_t strand = 3 * (size_t)groom->info.points_per_strand;
-    const uint32_t finest = groom->info.wisp_count[groom->info.levels - 1];
+    const uint32_t sections = binding->sections;
+    const size_t strand = 3 * (size_t)binding->points;
     const vec3 *centre = (const vec3 *)(const void *)centres;
     const quat *frame = (const quat *)(const void *)frames;
-    arena memory = arena_over(scratch, awt_groom_strand_scratch(groom) * sizeof(float));
+    arena memory = arena_over(scratch, evaluate_scratch(sections, binding->points) * sizeof(float));
     evaluate_table table;
-    scratch_lay_out(groom, &table, &memory);
-    for (uint32_t g = 0; g < finest; g++) {
-        const uint32_t first = groom->gc_strand_first[g];
+    evaluate_lay_out(&table, &memory, sections, binding->points);
+    for (uint32_t g = 0; g < binding->wisps; g++) {
+        const uint32_t first = binding->strand_first[g];
         evaluate_stations(&table, centre + (size_t)g * sections, frame + (size_t)g * sections);
-        evaluate_strands(&table, groom->strand_offset + strand * first, groom->gc_strand_first[g + 1] - first,
+        evaluate_strands(&table, binding->offsets + strand * first, binding->strand_first[g + 1] - first,
                          points + strand * first);
     }
 }

@@ -3,7 +3,8 @@
  * Along each finest GC stand as many stations as a strand has points, evenly from root to tip: a point of the smooth
  * curve through the section centres and a frame blended between the sections' frames. Point i of a strand is station
  * i's point plus a constant offset in its frame, so at rest the strands are the groom's own, exactly, and they move
- * rigidly with the wisp around them (§3.3). The client library evaluates with this same code. */
+ * rigidly with the wisp around them (§3.3). Whoever receives sections alone (geom/receive.h) evaluates with this same
+ * code, which therefore knows no groom. */
 #ifndef SIM_EVALUATE_H
 #define SIM_EVALUATE_H
 
@@ -40,6 +41,20 @@ void evaluate_stations(evaluate_table *table, const vec3 *centres, const quat *f
 /* out [strands][points][3] from offsets [strands][3][points] in the frames of the table's stations. */
 void evaluate_strands(const evaluate_table *table, const float *restrict offsets, uint32_t strands,
                       float *restrict out);
+
+/* How the strands of a groom hang on its finest GCs. */
+typedef struct evaluate_binding {
+    uint32_t wisps, sections;     /* finest GCs, and cross-sections of each */
+    uint32_t points;              /* of a strand */
+    const uint32_t *strand_first; /* [wisps + 1]; the last is how many strands there are */
+    const float *offsets;         /* [strands][3][points] */
+} evaluate_binding;
+
+/* All strands, points [strands][points][3], from section centres [wisps * sections][3] and frames [..][4]. `scratch`
+ * holds evaluate_scratch floats. */
+void evaluate_hair(const evaluate_binding *binding, const float *centres, const float *frames, float *scratch,
+                   float *points);
+size_t evaluate_scratch(uint32_t sections, uint32_t points);
 
 static inline vec3 evaluate_centre(const evaluate_table *table, uint32_t station)
 {

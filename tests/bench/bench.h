@@ -5,6 +5,8 @@
 #include "awt.h"
 #include "motion/motion.h"
 
+#include <time.h>
+
 enum { BENCH_MAX_WORKERS = 64 };
 
 /* Arguments without the subcommand's name; the exit code. */
@@ -46,5 +48,13 @@ awt_status bench_run(const bench_pass *pass, bench_figures *out, awt_error *erro
 
 /* Parameters of the single-level method: everything has split, nothing merges. */
 awt_params bench_single_level(awt_params params);
+
+/* Milliseconds of a clock that only goes on. */
+static inline double bench_now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
 
 #endif

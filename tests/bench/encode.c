@@ -60,7 +60,39 @@ static void table(FILE *text, const encode_plan *plan, const encode_row rows[ENC
             (double)rows[ENCODE_MOVINGS].scratch_bytes / 1048576);
 }
 
+static void table_of_guides(FILE *text, const guides_row rows[GUIDES_KINDS], size_t binding_bytes)
+{
+    fputs(
+        "\n                   |            |        ms       |     bytes a     | entropy | strand error, mm | Mbit/s\n"
+        "kind         nodes | bits, turn | encode  receive |  frame     node | bits/nd |      max    mean | at 60 Hz\n",
+        text);
+    for (int i = 0; i < GUIDES_KINDS; i++) {
+        const guides_row *r = &rows[i];
+        fprintf(text, "%-12s %5.0f | %4u %5u | %6.3f %8.3f | %6.0f %8.3f | %7.2f | %8.3f %7.3f | %6.2f\n", r->kind,
+                r->nodes, r->position_bits, r->turn_bits, r->encode_ms, r->receive_ms, r->bytes, r->bytes / r->nodes,
+                r->entropy_bits, r->max_error_mm, r->mean_error_mm, r->bytes * 8 * ENCODE_FRAME_RATE * 1e-6);
+    }
+    fprintf(text, "\nbinding, once: %.2f MiB\n", (double)binding_bytes / 1048576);
+}
+
 /* ---- the same as JSON ---- */
+
+static void json_guides(jsonout *j, const guides_row *r)
+{
+    jsonout_object(j, NULL);
+    jsonout_text(j, "kind", r->kind);
+    jsonout_real(j, "nodes", r->nodes);
+    jsonout_unsigned(j, "quantisation_bits", r->position_bits);
+    jsonout_unsigned(j, "turn_bits", r->turn_bits);
+    jsonout_real(j, "encode_ms", r->encode_ms);
+    jsonout_real(j, "receive_ms", r->receive_ms);
+    jsonout_real(j, "bytes", r->bytes);
+    jsonout_real(j, "entropy_bits_per_node", r->entropy_bits);
+    jsonout_real(j, "max_error_mm", r->max_error_mm);
+    jsonout_real(j, "mean_error_mm", r->mean_error_mm);
+    jsonout_real(j, "mbit_s_at_60hz", r->bytes * 8 * ENCODE_FRAME_RATE * 1e-6);
+    jsonout_close(j);
+}
 
 static void json_row(jsonout *j, const encode_row *r)
 {
@@ -87,7 +119,8 @@ static void json_row(jsonout *j, const encode_row *r)
     jsonout_close(j);
 }
 
-static bool json_document_to(FILE *file, const encode_plan *plan, const encode_row rows[ENCODE_ROWS])
+static bool json_document_to(FILE *file, const encode_plan *plan, const encode_row rows[ENCODE_ROWS],
+                             const guides_row of_guides[GUIDES_KINDS])
 {
     jsonout j = jsonout_begin(file);
     jsonout_object(&j, NULL);
@@ -100,20 +133,26 @@ static bool json_document_to(FILE *file, const encode_plan *plan, const encode_r
         json_row(&j, &rows[i]);
     }
     jsonout_close(&j);
+    jsonout_array(&j, "guides");
+    for (int i = 0; i < GUIDES_KINDS; i++) {
+        json_guides(&j, &of_guides[i]);
+    }
+    jsonout_close(&j);
     jsonout_close(&j);
     return jsonout_done(&j);
 }
 
 /* To standard output, or to a file whole or not at all. */
-static bool json_write(const encode_plan *plan, const encode_row rows[ENCODE_ROWS])
+static bool json_write(const encode_plan *plan, const encode_row rows[ENCODE_ROWS],
+                       const guides_row of_guides[GUIDES_KINDS])
 {
     char *text = NULL, error[512] = "not enough memory for the JSON text";
     size_t size = 0;
     if (strcmp(plan->json, "-") == 0) {
-        return json_document_to(stdout, plan, rows);
+        return json_document_to(stdout, plan, rows, of_guides);
     }
     FILE *memory = open_memstream(&text, &size);
-    bool done = memory && json_document_to(memory, plan, rows);
+    bool done = memory && json_document_to(memory, plan, rows, of_guides);
     done = memory && fclose(memory) == 0 && done && files_write(plan->json, text, size, error, sizeof error);
     if (!done) {
         fprintf(stderr, "awt-bench encode: %s\n", error);
@@ -193,14 +232,18 @@ int bench_encode(int argc, char *const *argv)
 {
     encode_plan plan;
     encode_row rows[ENCODE_ROWS];
+    guides_row of_guides[GUIDES_KINDS];
+    size_t binding_bytes = 0;
     int code;
     if (!plan_read(argc, argv, &plan, &code)) {
         return code;
     }
-    bool done = encode_measure(&plan, rows);
+    bool done = encode_measure(&plan, rows, of_guides, &binding_bytes);
     if (done) {
-        table(plan.json && strcmp(plan.json, "-") == 0 ? stderr : stdout, &plan, rows);
-        done = !plan.json || json_write(&plan, rows);
+        FILE *text = plan.json && strcmp(plan.json, "-") == 0 ? stderr : stdout;
+        table(text, &plan, rows);
+        table_of_guides(text, of_guides, binding_bytes);
+        done = !plan.json || json_write(&plan, rows, of_guides);
     }
     motion_fini(&plan.clip);
     return done ? 0 : 1;

@@ -4,9 +4,8 @@
 #define BENCH_ENCODE_H
 
 #include "bench/bench.h"
+#include "bench/encode_guides.h"
 #include "geom/encode.h"
-
-#include <time.h>
 
 enum { ENCODE_MAX_FRAMES = 1000, ENCODE_FRAME_RATE = 60 };
 
@@ -50,14 +49,8 @@ enum {
     ENCODE_ROWS = ENCODE_WHOLE_ROWS + ENCODE_DELTA_ROWS
 };
 
-static inline double bench_now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
-
-/* Runs the plan. False: why has been said. */
-bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS]);
+/* Runs the plan. False: why has been said. `binding_bytes`: of what a receiver of guides has once. */
+bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS], guides_row of_guides[GUIDES_KINDS],
+                    size_t *binding_bytes);
 
 #endif

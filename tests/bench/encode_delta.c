@@ -1,5 +1,6 @@
 /* encode_delta.c: every frame becomes whole numbers; from time to time the deltas to the one before and to the third
  * one before are made and read, by us and by libdraco. */
+#include "bench/bench.h"
 #include "bench/encode_delta.h"
 
 #include "base/error.h"

@@ -1,5 +1,6 @@
 /* encode_run.c: hair goes through a clip; every few frames each kind is encoded and decoded by us and by libdraco, one
  * after the other, so that whatever else the machine does meets both. */
+#include "bench/bench.h"
 #include "bench/encode.h"
 #include "bench/encode_delta.h"
 
@@ -312,7 +313,7 @@ static void fill_rows(const hair *h, subject *s, encode_row *rows)
 }
 
 static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects[2], delta_subject *deltas,
-                              awt_error *error)
+                              guides_subject *guides, awt_error *error)
 {
     progress bar = progress_begin(stderr, "encoding", false);
     const uint32_t frames = plan->frames * plan->stride;
@@ -330,19 +331,27 @@ static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects
         for (int kind = 0; kind < 2 && measured && status == AWT_OK; kind++) {
             status = measure_frame(h, &subjects[kind], time_us, error);
         }
+        if (measured && status == AWT_OK) {
+            status = guides_measure(guides, h->forest, h->centres, h->frames, h->points, error);
+        }
         progress_show(&bar, (double)n / frames, "");
     }
     progress_hide(&bar);
     return status;
 }
 
-bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS])
+bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS], guides_row of_guides[GUIDES_KINDS],
+                    size_t *binding_bytes)
 {
     hair h = {0};
     subject subjects[2] = {{0}};
     delta_subject *deltas = NULL;
+    guides_subject guides = {0};
     awt_error error = {0};
     awt_status status = make_hair(plan, &h, &error);
+    if (status == AWT_OK) {
+        status = guides_subject_init(&guides, h.groom, plan->frames, &error);
+    }
     for (int kind = 0; kind < 2 && status == AWT_OK; kind++) {
         status = make_subject(&h, kind ? GEOM_STRANDS : GEOM_RIBBON, plan->frames, &subjects[kind], &error);
     }
@@ -350,7 +359,7 @@ bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS])
         status = delta_subject_create(h.groom, plan->frames, &deltas, &error);
     }
     if (status == AWT_OK) {
-        status = measure_all(plan, &h, subjects, deltas, &error);
+        status = measure_all(plan, &h, subjects, deltas, &guides, &error);
     }
     if (status == AWT_OK) {
         delta_subject_rows(deltas, rows + ENCODE_WHOLE_ROWS);
@@ -362,6 +371,11 @@ bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS])
         }
         free_subject(&subjects[kind]);
     }
+    if (status == AWT_OK) {
+        guides_rows(&guides, of_guides);
+        *binding_bytes = guides.binding_bytes;
+    }
+    guides_subject_fini(&guides);
     free_hair(&h);
     if (status != AWT_OK) {
         fprintf(stderr, "awt-bench encode: %s\n", error.text);

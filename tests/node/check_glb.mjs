@@ -2,7 +2,8 @@
 //
 // gltf-validator must find no error. It does not look inside the Draco data, so draco3d then decodes each primitive:
 // counts, triangles, bounds and, where FILE.glb.f32 stands beside the file (raw little-endian floats of the vertices before
-// quantisation), every position within half a quantisation step. One line a file; exit 1 on any fault.
+// quantisation), every position within half a quantisation step; where FILE.glb.i16 does, every whole number of the other
+// attributes, in the order of their ids. One line a file; exit 1 on any fault.
 import { existsSync, readFileSync } from 'node:fs';
 import validator from 'gltf-validator';
 import { readFrame } from './frame.mjs';
@@ -20,6 +21,8 @@ const KINDS = {
     indices: (points) => Array.from({ length: Math.ceil(points / 3) * 3 }, (_, i) => Math.min(i, points - 1)),
   },
 };
+KINDS.guides = { ...KINDS.strands, bits: null, names: { strands: 'wisps', points: 'sections', first: 'first_wisp' } };
+const NAMES = { strands: 'strands', points: 'points_per_strand', first: 'first_strand' };
 const SEVERITY = ['error', 'warning', 'information', 'hint'];
 
 async function validate(bytes, faults) {
@@ -44,15 +47,36 @@ function checkFrame({ json, node }, faults) {
   expect(json.extensionsUsed?.includes(draco) && json.extensionsRequired?.includes(draco), `${draco} is not required`);
   expect(node.name === 'hair', 'the node is not named hair');
   expect(node.extras?.kind in KINDS, `no kind is called ${node.extras?.kind}`);
-  expect(node.extras?.widths?.length === node.extras?.points_per_strand, 'no width for each point of a strand');
+  if (node.extras?.kind === 'guides') {
+    expect(/^[0-9a-f]{16}$/.test(node.extras.binding), 'no binding is named');
+    expect(node.extras.turn_bits >= 10 && node.extras.turn_bits <= 14, `turns of ${node.extras.turn_bits} bits`);
+    expect(typeof node.extras.bound === 'boolean', 'it does not say whether it is bound');
+  } else {
+    expect(node.extras?.widths?.length === node.extras?.points_per_strand, 'no width for each point of a strand');
+    const material = json.materials[0];
+    expect(material.name === 'hair' && material.doubleSided, 'the material is not a doubleSided one named hair');
+  }
   expect(node.translation?.length === 3 && node.rotation?.length === 4, 'the node has no head pose');
   expect(json.accessors.every((accessor) => accessor.bufferView === undefined), 'an accessor has a bufferView');
-  const material = json.materials[0];
-  expect(material.name === 'hair' && material.doubleSided, 'the material is not a doubleSided one named hair');
+}
+
+function checkNumbers(primitive, faults) {
+  for (const [name, numbers] of Object.entries(primitive.numbers)) {
+    const accessor = primitive.accessors[name];
+    if (accessor.componentType !== 5122 || accessor.type !== 'VEC3' || accessor.count * 3 !== numbers.length) {
+      faults.push(`${name} is no accessor of ${numbers.length / 3} triples of shorts`);
+    }
+  }
 }
 
 function checkBounds(primitive, faults) {
   const { position, indices } = primitive.accessors;
+  if (indices.count !== primitive.indices.length || indices.componentType !== 5123 || primitive.mode !== 4) {
+    faults.push('not TRIANGLES of unsigned shorts');
+  }
+  if (!primitive.positions) {
+    return;
+  }
   const least = [Infinity, Infinity, Infinity], greatest = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < primitive.positions.length; i++) {
     least[i % 3] = Math.min(least[i % 3], primitive.positions[i]);
@@ -61,8 +85,8 @@ function checkBounds(primitive, faults) {
   if (position.count * 3 !== primitive.positions.length || indices.count !== primitive.indices.length) {
     faults.push(`counts ${position.count}, ${indices.count} are not those of the data`);
   }
-  if (primitive.mode !== 4 || indices.componentType !== 5123 || position.componentType !== 5126) {
-    faults.push('not TRIANGLES of unsigned shorts over floats');
+  if (position.componentType !== 5126) {
+    faults.push('not TRIANGLES over floats');
   }
   for (let k = 0; k < 3; k++) {
     if (position.min[k] !== least[k] || position.max[k] !== greatest[k]) {
@@ -72,10 +96,10 @@ function checkBounds(primitive, faults) {
 }
 
 /** Every strand's triangles over its own vertices. */
-function checkTriangles(primitive, kind, pointsPerStrand, faults) {
+function checkTriangles(primitive, kind, strands, pointsPerStrand, faults) {
   const indices = kind.indices(pointsPerStrand);
   let at = 0;
-  for (let s = 0; s < primitive.extras.strands; s++) {
+  for (let s = 0; s < strands; s++) {
     const first = s * pointsPerStrand * kind.verticesAPoint;
     for (const index of indices) {
       if (primitive.indices[at++] !== first + index) {
@@ -115,10 +139,23 @@ function compareWithSidecar(file, frame, faults) {
   return worst;
 }
 
+/** Whether the whole numbers are those that went in; null where none are given. */
+function compareNumbers(file, frame, faults) {
+  if (!existsSync(`${file}.i16`)) {
+    return;
+  }
+  const raw = readFileSync(`${file}.i16`);
+  const expected = new Int16Array(raw.buffer.slice(raw.byteOffset, raw.byteOffset + raw.byteLength));
+  const decoded = frame.primitives.flatMap((primitive) => Object.values(primitive.numbers).flatMap((list) => [...list]));
+  if (decoded.length !== expected.length || decoded.some((number, i) => number !== expected[i])) {
+    faults.push(`${decoded.length} whole numbers are not the ${expected.length} that went in`);
+  }
+}
+
 /** One box for all patches, or the patches' edges would not meet from frame to frame. */
 function checkBox(frame, kind, faults) {
   const boxes = new Set(frame.primitives.map((primitive) => JSON.stringify(primitive.box)));
-  if (boxes.size !== 1 || frame.primitives[0].box.bits !== kind.bits) {
+  if (boxes.size !== 1 || (kind.bits && frame.primitives[0].box.bits !== kind.bits)) {
     faults.push(`quantisation boxes ${[...boxes].join(' ')}`);
   }
 }
@@ -129,22 +166,26 @@ async function checkFile(file) {
   const issues = await validate(bytes, faults);
   const frame = await readFrame(bytes);
   checkFrame(frame, faults);
-  const { strands, points_per_strand: points } = frame.node.extras;
-  const kind = KINDS[frame.node.extras.kind];
+  const kind = KINDS[frame.node.extras.kind], names = kind.names ?? NAMES;
+  const strands = frame.node.extras[names.strands], points = frame.node.extras[names.points];
   const floatsAStrand = points * kind.verticesAPoint * 3;
   let next = 0;
   for (const primitive of frame.primitives) {
+    const here = primitive.extras[names.strands];
     checkBounds(primitive, faults);
-    checkTriangles(primitive, kind, points, faults);
-    if (primitive.extras.first_strand !== next || primitive.positions.length !== primitive.extras.strands * floatsAStrand) {
-      faults.push(`the patch at strand ${primitive.extras.first_strand} does not follow strand ${next}`);
+    checkNumbers(primitive, faults);
+    checkTriangles(primitive, kind, here, points, faults);
+    const values = primitive.positions ?? primitive.numbers._OFFSET;
+    if (primitive.extras[names.first] !== next || values.length !== here * floatsAStrand) {
+      faults.push(`the patch at strand ${primitive.extras[names.first]} does not follow strand ${next}`);
     }
-    next += primitive.extras.strands;
+    next += here;
   }
   if (next !== strands) {
     faults.push(`${next} strands in patches, ${strands} in the node`);
   }
   checkBox(frame, kind, faults);
+  compareNumbers(file, frame, faults);
   const worst = compareWithSidecar(file, frame, faults);
   const compared = worst === null ? 'no positions to compare' : `positions within ${worst.toFixed(2)} steps`;
   console.log(`${faults.length ? 'FAIL' : 'ok  '} ${file}: ${frame.node.extras.kind}, ${strands} strands of ${points}, ` +

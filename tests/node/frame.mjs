@@ -50,6 +50,17 @@ function readPositions(draco, decoder, mesh, attribute) {
   return positions;
 }
 
+/** Whole numbers of an attribute, as they are. */
+function readNumbers(draco, decoder, mesh, attribute) {
+  const values = new draco.DracoInt16Array();
+  if (attribute.data_type() !== draco.DT_INT16 || !decoder.GetAttributeInt16ForAllPoints(mesh, attribute, values)) {
+    throw new Error('draco3d: an attribute is not of 16-bit numbers');
+  }
+  const numbers = Int16Array.from({ length: values.size() }, (_, i) => values.GetValue(i));
+  draco.destroy(values);
+  return numbers;
+}
+
 function readIndices(draco, decoder, mesh) {
   const count = mesh.num_faces() * 3;
   const pointer = draco._malloc(count * 4);
@@ -73,17 +84,22 @@ function decodePrimitive(draco, json, binary, primitive) {
   const extension = primitive.extensions.KHR_draco_mesh_compression;
   const view = json.bufferViews[extension.bufferView];
   const data = new Int8Array(binary.buffer, binary.byteOffset + (view.byteOffset ?? 0), view.byteLength);
-  const position = (decoder, mesh) => decoder.GetAttributeByUniqueId(mesh, extension.attributes.POSITION);
+  const { POSITION: position, ...others } = extension.attributes;
+  const attribute = (decoder, mesh, id) => decoder.GetAttributeByUniqueId(mesh, id);
   const decoded = withMesh(draco, data, () => {}, (decoder, mesh) => ({
-    positions: readPositions(draco, decoder, mesh, position(decoder, mesh)),
+    positions: position === undefined ? null : readPositions(draco, decoder, mesh, attribute(decoder, mesh, position)),
+    numbers: Object.fromEntries(Object.entries(others).map(([name, id]) =>
+      [name, readNumbers(draco, decoder, mesh, attribute(decoder, mesh, id))])),
     indices: readIndices(draco, decoder, mesh),
   }));
-  const box = withMesh(draco, data, (decoder) => decoder.SkipAttributeTransform(draco.POSITION),
-    (decoder, mesh) => readBox(draco, decoder, mesh, position(decoder, mesh)));
+  const box = position === undefined ? null
+    : withMesh(draco, data, (decoder) => decoder.SkipAttributeTransform(draco.POSITION),
+      (decoder, mesh) => readBox(draco, decoder, mesh, attribute(decoder, mesh, position)));
   return { ...decoded, box };
 }
 
-/** { json, node, primitives: [{ positions, indices, box, mode, extras, accessors: { position, indices } }] } of a frame. */
+/** { json, node, primitives: [{ positions, numbers, indices, box, mode, extras, accessors }] } of a frame: positions and box
+ * are null where there are none, numbers and accessors go by the attribute's name (and accessors.indices). */
 export async function readFrame(bytes) {
   dracoModule ??= await draco3d.createDecoderModule({});
   const { json, binary } = splitGlb(bytes);
@@ -92,7 +108,11 @@ export async function readFrame(bytes) {
     ...decodePrimitive(dracoModule, json, binary, primitive),
     mode: primitive.mode,
     extras: primitive.extras ?? {},
-    accessors: { position: json.accessors[primitive.attributes.POSITION], indices: json.accessors[primitive.indices] },
+    accessors: {
+      position: json.accessors[primitive.attributes.POSITION],
+      indices: json.accessors[primitive.indices],
+      ...Object.fromEntries(Object.entries(primitive.attributes).map(([name, index]) => [name, json.accessors[index]])),
+    },
   }));
   return { json, node, primitives };
 }

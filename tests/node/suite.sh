@@ -1,24 +1,25 @@
 #!/bin/sh
 # suite.sh BUILD: gltf-validator and draco3d judge frames of the encoder, against the positions that went in, and what the command
-# line client leaves behind after playing each style.
+# line client leaves behind after playing each style; the receiver as WebAssembly makes strands of guides, and is built for Windows.
 set -u
 cd "$(dirname "$0")/../.."
 build=$1
-passed=0 failed=0
+passed=0 failed=0 skipped=0
 if [ ! -d tests/node/node_modules/gltf-validator ] || ! command -v node >/dev/null 2>&1; then
     echo "skip: node or its packages are not here"
-    echo "0 passed, 0 failed, 5 skipped"
+    echo "0 passed, 0 failed, 9 skipped"
     exit 0
 fi
 work=$(mktemp -d)
 daemon=
 trap '[ -z "$daemon" ] || { kill $daemon; wait $daemon; } 2>/dev/null; rm -rf "$work"' EXIT
 
-# judge NAME COMMAND...: the command writes GLB files into $work/NAME, which other tools then read.
+# judge NAME COMMAND...: the command writes GLB files into $work/NAME, which $checker then reads.
+checker=tests/node/check_glb.mjs
 judge() {
     name=$1
     shift
-    if "$@" >"$work/$name.log" 2>&1 && node tests/node/check_glb.mjs "$work/$name"/*.glb >>"$work/$name.log" 2>&1; then
+    if "$@" >"$work/$name.log" 2>&1 && node "$checker" "$work/$name"/*.glb >>"$work/$name.log" 2>&1; then
         passed=$((passed + 1))
         echo "ok   $name: $(ls "$work/$name" | grep -c 'glb$') files"
     else
@@ -27,6 +28,37 @@ judge() {
         echo "FAIL $name"
     fi
 }
+
+# cross NAME COMPILER COMMAND...: the command, where its compiler is here; its output is shown.
+cross() {
+    name=$1
+    compiler=$2
+    shift 2
+    if ! command -v "$compiler" >/dev/null 2>&1; then
+        skipped=$((skipped + 1))
+        echo "skip $name: $compiler is not here"
+    elif "$@" >"$work/cross.log" 2>&1; then
+        passed=$((passed + 1))
+        echo "ok   $name: $(tail -n 1 "$work/cross.log")"
+    else
+        failed=$((failed + 1))
+        cat "$work/cross.log"
+        echo "FAIL $name"
+    fi
+}
+as_webassembly() {
+    make --no-print-directory "$build/receiver.wasm" B="$build" && node tests/node/check_receiver.mjs "$build/receiver.wasm" "$work/guides"
+}
+
+mkdir "$work/nodes"
+checker=tests/node/check_nodes.mjs
+judge nodes env AWT_FRAMES="$work/nodes" "$build/tests" geom_nodes_for_other_readers
+checker=tests/node/check_glb.mjs
+
+mkdir "$work/guides"
+judge guides env AWT_FRAMES="$work/guides" "$build/tests" geom_guides_for_other_receivers
+cross "receiver for Windows" x86_64-w64-mingw32-gcc make --no-print-directory "$build/receiver.dll" B="$build"
+cross "receiver as WebAssembly" emcc as_webassembly
 
 mkdir "$work/frames"
 judge frames env AWT_FRAMES="$work/frames" "$build/tests" geom_frames_for_other_readers
@@ -43,5 +75,5 @@ for style in short short-curly long long-curly; do
     judge $style "$build/awtctl" play --connect "$address" --token-file "$work/state/token" --style $style --strands 2000 \
         --motion lean --frames 120 --every 40 --out "$work/$style" --quiet --json "$work/$style.json"
 done
-echo "$passed passed, $failed failed, 0 skipped"
+echo "$passed passed, $failed failed, $skipped skipped"
 [ $failed -eq 0 ]

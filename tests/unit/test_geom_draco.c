@@ -39,8 +39,8 @@ static row make_row(uint32_t vertices, int bits, symbols_scheme scheme)
         r.bounds.least[k] = r.box.origin[k];
         r.bounds.greatest[k] = r.box.origin[k] + r.box.range;
     }
-    CHECK_INT(draco_mesh_make(vertices, r.indices, r.triangles, &r.mesh, NULL), AWT_OK);
-    CHECK_INT(draco_writer_create(vertices, bits, scheme, &r.writer, NULL), AWT_OK);
+    CHECK_INT(draco_mesh_make(vertices, r.indices, r.triangles, NULL, &r.mesh, NULL), AWT_OK);
+    CHECK_INT(draco_writer_create(vertices, bits, scheme, DRACO_POSITIONS, &r.writer, NULL), AWT_OK);
     return r;
 }
 

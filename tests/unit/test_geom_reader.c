@@ -6,9 +6,11 @@
 #include "geom/draco_shim.h"
 #include "geom/glb.h"
 #include "geom/json.h"
+#include "geom/json_number.h"
 #include "geom/read.h"
 #include "unit/geom_fixture.h"
 
+#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -367,6 +369,35 @@ TEST(geom_json_finds_members_and_reads_numbers)
     CHECK(json_member(&json, JSON_NONE, "n") == JSON_NONE);
     CHECK_INT(json_items(&json, json_member(&json, 0, "skip")), 2);
     json_fini(&json);
+}
+
+static bool number_of(const char *text, double *out)
+{
+    return json_number(text, text + strlen(text), out);
+}
+
+/* Also under a locale that writes commas, where the machine has one. */
+TEST(geom_json_numbers_are_json_numbers_only)
+{
+    const char *bad[] = {"",     "-",   "1.",  ".5", "1e", "1e+",   "+1",   "1,5",
+                         "0x10", "inf", "nan", "1 ", " 1", "1e400", "1.5.5"};
+    const char *locales[] = {"C", "de_DE.UTF-8", "fr_FR.UTF-8"};
+    char *kept = strdup(setlocale(LC_NUMERIC, NULL));
+    for (size_t l = 0; l < sizeof locales / sizeof locales[0]; l++) {
+        double number = 0;
+        if (!setlocale(LC_NUMERIC, locales[l])) {
+            continue;
+        }
+        for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+            check_true(__FILE__, __LINE__, bad[i], !number_of(bad[i], &number));
+        }
+        CHECK(number_of("-1.2345678901234567e-300", &number) && number == -1.2345678901234567e-300);
+        CHECK(number_of("0.1", &number) && number == 0.1);
+        CHECK(number_of("1E3", &number) && number == 1000);
+        CHECK(number_of("9007199254740993", &number) && number == 9007199254740992.0);
+    }
+    setlocale(LC_NUMERIC, kept);
+    free(kept);
 }
 
 TEST(geom_json_limits_depth_members_and_size)

@@ -1,0 +1,173 @@
+/* guides.c: see guides.h. */
+#include "geom/guides.h"
+
+#include "geom/draco_format.h"
+
+#include <math.h>
+
+static int32_t nearest(float value)
+{
+    return (int32_t)floorf(value + 0.5f);
+}
+
+static float turn_reach(const geom_binding *binding)
+{
+    return (float)((1 << (binding->turn_bits - 1)) - 1);
+}
+
+/* The quaternion that three numbers mean; of length 1 whatever they are. */
+static quat turn_of(const geom_binding *binding, const int16_t number[3])
+{
+    const float scale = 1.0f / turn_reach(binding);
+    const vec3 m = {(float)number[0] * scale, (float)number[1] * scale, (float)number[2] * scale};
+    const float square = vec3_dot(m, m), share = 1.0f / (1.0f + square);
+    return (quat){2.0f * m.x * share, 2.0f * m.y * share, 2.0f * m.z * share, (1.0f - square) * share};
+}
+
+static float dot_of(const quat *from, const quat *to)
+{
+    return (from->x * to->x + from->y * to->y) + (from->z * to->z + from->w * to->w);
+}
+
+/* Three numbers of the turn that quaternion t is. False: it is none. */
+static bool put_turn(const geom_binding *binding, quat t, int16_t number[3])
+{
+    const float length = sqrtf(t.x * t.x + t.y * t.y + t.z * t.z + t.w * t.w);
+    const float scale = turn_reach(binding) / (t.w < 0 ? t.w - length : t.w + length);
+    if (!(length > 0 && isfinite(scale))) {
+        return false;
+    }
+    number[0] = (int16_t)nearest(t.x * scale);
+    number[1] = (int16_t)nearest(t.y * scale);
+    number[2] = (int16_t)nearest(t.z * scale);
+    return true;
+}
+
+/* Strands go from one section's frame to the next the shorter way round (sim/evaluate.c). Where that is half a turn, a
+ * number's rounding would send them the other way, millimetres off: the turn of the second section, node n, is then
+ * taken a few numbers farther, so that a reader finds the same way the shorter one. */
+static void keep_side(const geom_binding *binding, const quat *rest, const quat *frames, int16_t *turns, size_t n)
+{
+    enum { FARTHEST = 4 };
+    const float near = 2.0f * FARTHEST * guides_turn_step(binding->turn_bits), dot = dot_of(&frames[n - 1], &frames[n]);
+    if (!(fabsf(dot) < near)) {
+        return;
+    }
+    const quat before = quat_mul(turn_of(binding, turns + 3 * n - 3), rest[n - 1]);
+    int16_t *number = turns + 3 * n;
+    for (int16_t far = 0; far <= FARTHEST; far++) {
+        for (int k = 0; k < 6; k++) {
+            const int16_t kept = number[k / 2];
+            number[k / 2] = (int16_t)(kept + (k % 2 ? far : -far));
+            const quat here = quat_mul(turn_of(binding, number), rest[n]);
+            const bool flipped = (dot_of(&before, &frames[n - 1]) < 0) != (dot_of(&here, &frames[n]) < 0);
+            if (!signbit(dot_of(&before, &here)) == (!signbit(dot) != flipped)) {
+                return;
+            }
+            number[k / 2] = kept;
+        }
+    }
+}
+
+bool guides_turns(const geom_binding *binding, guides_part part, const quat *frames, int16_t *turns)
+{
+    const size_t count = (size_t)part.wisps * binding->sections;
+    const quat *rest = binding->rest_frame + (size_t)part.first_wisp * binding->sections;
+    for (size_t n = 0; n < count; n++) {
+        if (!put_turn(binding, quat_mul(frames[n], quat_conjugate(rest[n])), turns + 3 * n)) {
+            return false;
+        }
+        if (n % binding->sections > 0) {
+            keep_side(binding, rest, frames, turns, n);
+        }
+    }
+    return true;
+}
+
+void guides_frames(const geom_binding *binding, guides_part part, const int16_t *turns, quat *frames)
+{
+    const size_t first = (size_t)part.first_wisp * binding->sections, count = (size_t)part.wisps * binding->sections;
+    for (size_t n = 0; n < count; n++) {
+        frames[n] = quat_mul(turn_of(binding, turns + 3 * n), binding->rest_frame[first + n]);
+    }
+}
+
+/* ---- bound */
+
+enum { NO_NEIGHBOUR = -1 };
+
+/* How many sections before section i of the part's wisp number w its neighbour is; NO_NEIGHBOUR. */
+static int32_t neighbour(const geom_binding *binding, guides_part part, uint32_t w, uint32_t i)
+{
+    const uint32_t *tree = binding->tree + part.first_wisp + w;
+    if (w > 0 && tree[0] == tree[-1]) {
+        return (int32_t)binding->sections;
+    }
+    return i > 0 ? 1 : NO_NEIGHBOUR;
+}
+
+/* Where the section that stands at `rest` at rest is expected, from a neighbour `back` sections before. */
+static vec3 predict(const geom_binding *binding, const vec3 *rest, int32_t back, const vec3 *centre,
+                    const int16_t *turn)
+{
+    if (back == NO_NEIGHBOUR) {
+        return *rest;
+    }
+    const quat t = turn_of(binding, back == 1 ? turn : turn - 3 * back);
+    return vec3_add(centre[-back], quat_rotate(t, vec3_sub(*rest, rest[-back])));
+}
+
+static vec3 step_on(const geom_binding *binding, vec3 from, const int16_t offset[3])
+{
+    const vec3 steps = {(float)offset[0], (float)offset[1], (float)offset[2]};
+    return vec3_mad(from, steps, binding->position_step_m);
+}
+
+/* One coordinate's distance in steps, as far as a number goes. */
+static int16_t steps_to(float way_m, float step_m, bool *too_far)
+{
+    const float steps = way_m / step_m, most = DRACO_NUMBER_MOST;
+    *too_far = *too_far || !(fabsf(steps) <= most);
+    return (int16_t)nearest(fmaxf(fminf(steps, most), -most));
+}
+
+uint32_t guides_bind(const geom_binding *binding, guides_part part, const vec3 *centres, int16_t *turns,
+                     int16_t *offsets, vec3 *rebuilt)
+{
+    const uint32_t sections = binding->sections;
+    const vec3 *rest = binding->rest_centre + (size_t)part.first_wisp * sections;
+    const float step = binding->position_step_m;
+    uint32_t clamped = 0;
+    for (size_t n = 0; n < (size_t)part.wisps * sections; n++) {
+        const int32_t back = neighbour(binding, part, (uint32_t)(n / sections), (uint32_t)(n % sections));
+        const vec3 from = predict(binding, rest + n, back, rebuilt + n, turns + 3 * n);
+        const vec3 way = vec3_sub(centres[n], from);
+        int16_t *offset = offsets + 3 * n;
+        bool too_far = false;
+        offset[0] = steps_to(way.x, step, &too_far);
+        offset[1] = steps_to(way.y, step, &too_far);
+        offset[2] = steps_to(way.z, step, &too_far);
+        rebuilt[n] = step_on(binding, from, offset);
+        clamped += too_far;
+    }
+    for (size_t n = (size_t)part.wisps * sections; n-- > 0;) { /* backwards: a neighbour is still itself */
+        const int32_t back = neighbour(binding, part, (uint32_t)(n / sections), (uint32_t)(n % sections));
+        for (size_t k = 3 * n; k < 3 * n + 3 && back != NO_NEIGHBOUR; k++) {
+            turns[k] = (int16_t)(turns[k] - turns[k - 3 * (size_t)back]);
+        }
+    }
+    return clamped;
+}
+
+void guides_unbind(const geom_binding *binding, guides_part part, const int16_t *offsets, int16_t *turns, vec3 *centres)
+{
+    const uint32_t sections = binding->sections;
+    const vec3 *rest = binding->rest_centre + (size_t)part.first_wisp * sections;
+    for (size_t n = 0; n < (size_t)part.wisps * sections; n++) {
+        const int32_t back = neighbour(binding, part, (uint32_t)(n / sections), (uint32_t)(n % sections));
+        for (size_t k = 3 * n; k < 3 * n + 3 && back != NO_NEIGHBOUR; k++) {
+            turns[k] = (int16_t)(turns[k] + turns[k - 3 * (size_t)back]);
+        }
+        centres[n] = step_on(binding, predict(binding, rest + n, back, centres + n, turns + 3 * n), offsets + 3 * n);
+    }
+}

@@ -1,0 +1,112 @@
+/* lines.c: see lines.h. */
+#include "geom/lines.h"
+
+#include "base/error.h"
+#include "geom/draco_read.h"
+#include "geom/topology.h"
+
+#include <stdlib.h>
+
+uint32_t lines_largest_patch(const glb_frame *frame)
+{
+    uint32_t largest = 0;
+    for (uint32_t i = 0; i < frame->patch_count; i++) {
+        largest = frame->patches[i].strands > largest ? frame->patches[i].strands : largest;
+    }
+    return largest;
+}
+
+/* `vertices` of all patches, each at its strands' place. */
+static awt_status read_patches(const glb_frame *frame, draco_reader *reader, const uint16_t *indices,
+                               lines_decode *other, float *vertices, awt_error *error)
+{
+    const size_t a_strand = (size_t)frame->points_per_strand * topology_vertices_a_point(frame->kind) * 3;
+    awt_status status = AWT_OK;
+    for (uint32_t i = 0; i < frame->patch_count && status == AWT_OK; i++) {
+        const glb_patch *patch = &frame->patches[i];
+        const unsigned char *data = frame->binary + patch->offset;
+        float *here = vertices + patch->first_strand * a_strand;
+        if (!draco_read(reader, data, patch->size, indices, patch->vertices, patch->triangles, here)) {
+            status = other ? other(data, patch->size, indices, patch->vertices, patch->triangles, here, error)
+                           : error_set(error, AWT_BAD_FORMAT, "a patch's Draco data is not what awtd's encoder writes");
+        }
+    }
+    return status;
+}
+
+uint16_t *lines_indices(const glb_frame *frame)
+{
+    const uint32_t per_strand = frame->points_per_strand, largest = lines_largest_patch(frame);
+    uint16_t *indices = calloc(topology_triangles(frame->kind, largest, per_strand), 3 * sizeof *indices);
+    if (indices) {
+        topology_indices(frame->kind, largest, per_strand, indices);
+    }
+    return indices;
+}
+
+static awt_status read_vertices(const glb_frame *frame, lines_decode *other, float *vertices, awt_error *error)
+{
+    const uint32_t per_strand = frame->points_per_strand, largest = lines_largest_patch(frame);
+    draco_reader *reader = NULL;
+    uint16_t *indices = lines_indices(frame);
+    awt_status status = indices ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
+    if (status == AWT_OK) {
+        status = draco_reader_create(largest * per_strand * topology_vertices_a_point(frame->kind),
+                                     topology_triangles(frame->kind, largest, per_strand), &reader, error);
+    }
+    if (status == AWT_OK) {
+        status = read_patches(frame, reader, indices, other, vertices, error);
+    }
+    draco_reader_destroy(reader);
+    free(indices);
+    return status;
+}
+
+/* Centre lines: the mean of the two edges. */
+static void fill_positions(const float *vertices, size_t points, float *positions)
+{
+    for (size_t i = 0; i < points; i++) {
+        for (size_t k = 0; k < 3; k++) {
+            positions[3 * i + k] = 0.5f * vertices[6 * i + k] + 0.5f * vertices[6 * i + 3 + k];
+        }
+    }
+}
+
+awt_status lines_read(glb_frame *frame, lines_decode *other, geom_strands *out, awt_error *error)
+{
+    const size_t points = (size_t)frame->strands * frame->points_per_strand;
+    const bool ribbon = frame->kind == GEOM_RIBBON;
+    geom_strands strands = {.kind = frame->kind,
+                            .strand_count = frame->strands,
+                            .points_per_strand = frame->points_per_strand,
+                            .positions = calloc(points, 3 * sizeof(float)),
+                            .vertices = ribbon ? calloc(points, 6 * sizeof(float)) : NULL,
+                            .patch_count = frame->patch_count,
+                            .head = frame->head,
+                            .time_us = frame->time_us};
+    awt_status status = strands.positions && (strands.vertices || !ribbon) ? AWT_OK : AWT_NO_MEMORY;
+    status = status == AWT_OK ? read_vertices(frame, other, ribbon ? strands.vertices : strands.positions, error)
+                              : error_set(error, status, NULL);
+    if (status != AWT_OK) {
+        geom_strands_fini(&strands);
+        return status;
+    }
+    if (ribbon) {
+        fill_positions(strands.vertices, points, strands.positions);
+    }
+    for (uint32_t i = 0; i < frame->patch_count; i++) {
+        strands.triangle_count += frame->patches[i].triangles;
+    }
+    strands.widths = frame->widths; /* the caller's now */
+    frame->widths = NULL;
+    *out = strands;
+    return AWT_OK;
+}
+
+void geom_strands_fini(geom_strands *strands)
+{
+    free(strands->positions);
+    free(strands->vertices);
+    free(strands->widths);
+    *strands = (geom_strands){0};
+}

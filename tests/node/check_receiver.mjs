@@ -1,0 +1,112 @@
+// check_receiver.mjs RECEIVER.wasm FOLDER: the receiver as WebAssembly makes strands of frames that the C program simulated.
+//
+// FOLDER holds NAME.awtb (bindings) and NAME-*.glb with FILE.glb.strands.f32 beside each: the server's strand points (raw
+// little-endian floats). Every point must be within 0.2 mm of the server's, and where FILE.glb.received.f32 is there, what
+// the receiver makes of the frame in C, every bit the same. A reader written from proto/GEOMETRY.md alone (guides.mjs) must
+// come within a micrometre of it, too. One line a file; exit 1 on any fault.
+import { readFileSync, readdirSync, existsSync } from 'node:fs';
+import { join } from 'node:path';
+import * as document from './guides.mjs';
+
+const ALLOWED_M = 0.2e-3, ROUNDING_M = 2e-6;
+const [wasm, folder] = process.argv.slice(2);
+if (!folder) {
+  console.error('usage: node check_receiver.mjs RECEIVER.wasm FOLDER');
+  process.exit(2);
+}
+
+const { exports: receiver } = new WebAssembly.Instance(new WebAssembly.Module(readFileSync(wasm)), {
+  env: { emscripten_notify_memory_growth() {} },
+});
+receiver._initialize();
+
+/** The bytes at an address of the receiver's memory, which may have moved since the last call. */
+const memory = (address, length) => new Uint8Array(receiver.memory.buffer, address, length);
+
+function whatFailed() {
+  const text = memory(receiver.receiver_error(), 240);
+  return new TextDecoder().decode(text.subarray(0, text.indexOf(0)));
+}
+
+/** `use` of the address of a copy of the bytes. */
+function withBytes(bytes, use) {
+  const address = receiver.malloc(bytes.length);
+  memory(address, bytes.length).set(bytes);
+  const result = use(address, bytes.length);
+  receiver.free(address);
+  return result;
+}
+
+function readBinding(file) {
+  const binding = withBytes(readFileSync(file), receiver.receiver_binding);
+  if (!binding) {
+    throw new Error(`${file}: ${whatFailed()}`);
+  }
+  return binding;
+}
+
+function readFloats(file) {
+  const raw = readFileSync(file);
+  return new Float32Array(raw.buffer.slice(raw.byteOffset, raw.byteOffset + raw.byteLength));
+}
+
+function receive(binding, bytes) {
+  if (!withBytes(bytes, (address, length) => receiver.receiver_frame(binding, address, length))) {
+    throw new Error(whatFailed());
+  }
+  const floats = receiver.receiver_strands() * receiver.receiver_points() * 3;
+  return new Float32Array(receiver.memory.buffer, receiver.receiver_positions(), floats).slice();
+}
+
+function distances(points, expected) {
+  let worst = 0, sum = 0;
+  for (let i = 0; i < points.length; i += 3) {
+    const way = Math.hypot(points[i] - expected[i], points[i + 1] - expected[i + 1], points[i + 2] - expected[i + 2]);
+    worst = Math.max(worst, way);
+    sum += way;
+  }
+  return { worst, mean: sum / (points.length / 3) };
+}
+
+/** What to say of a frame; throws what is wrong with it. */
+async function check(binding, described, file) {
+  const bytes = readFileSync(file), expected = readFloats(`${file}.strands.f32`);
+  const begin = performance.now(), points = receive(binding, bytes), took = performance.now() - begin;
+  if (points.length !== expected.length) {
+    throw new Error(`${points.length} numbers, not ${expected.length}`);
+  }
+  const { worst, mean } = distances(points, expected);
+  if (!(worst <= ALLOWED_M)) {
+    throw new Error(`a point is ${(worst * 1e3).toFixed(3)} mm from the server's`);
+  }
+  if (existsSync(`${file}.received.f32`)) {
+    const native = readFloats(`${file}.received.f32`);
+    if (Buffer.compare(Buffer.from(native.buffer), Buffer.from(points.buffer)) !== 0) {
+      throw new Error('the strands are not those of the receiver in C, bit by bit');
+    }
+  }
+  const { worst: apart } = distances(await document.strandsOfGuides(described, bytes), points);
+  if (!(apart <= ROUNDING_M)) {
+    throw new Error(`a point is ${(apart * 1e6).toFixed(1)} micrometres from what GEOMETRY.md says`);
+  }
+  const strands = receiver.receiver_strands(), each = receiver.receiver_points();
+  return `${strands} strands of ${each} from ${bytes.length} bytes in ${took.toFixed(1)} ms, ` +
+    `worst ${(worst * 1e3).toFixed(3)} mm, mean ${(mean * 1e3).toFixed(3)} mm`;
+}
+
+let passed = 0, failed = 0;
+for (const name of readdirSync(folder).filter((file) => file.endsWith('.awtb'))) {
+  const stem = name.slice(0, -'.awtb'.length), binding = readBinding(join(folder, name));
+  const described = document.readBinding(readFileSync(join(folder, name)));
+  for (const file of readdirSync(folder).filter((other) => other.startsWith(`${stem}-`) && other.endsWith('.glb'))) {
+    try {
+      console.log(`ok   ${file}: ${await check(binding, described, join(folder, file))}`);
+      passed++;
+    } catch (error) {
+      console.log(`FAIL ${file}: ${error.message}`);
+      failed++;
+    }
+  }
+}
+console.log(`${passed} passed, ${failed} failed, 0 skipped`);
+process.exit(failed || !passed ? 1 : 0);
