@@ -136,6 +136,8 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
     X(merge_velocity, 0.12f, 0.0f, 100.0f, "m/s", "AWT 3.2: greatest relative speed of nodes that merge")              \
     X(merge_slack, 1.5f, 1.0f, 100.0f, "", "AWT 3.2: nodes merge within this many radii of their super-node")          \
     X(residence, 0.08f, 0.0f, 10.0f, "s", "least time between two events of one wisp")                                 \
+    X(split_budget, 0.0f, 0.0f, 1e6f, "",                                                                              \
+      "most splits of the whole head in a step, rounded up; what is left over splits in the next ones; 0: no limit")   \
     X(acceleration_tau, 0.040f, 0.0f, 1.0f, "s", "time constant of the filtered acceleration")                         \
     X(offset_relaxation, 1.5f, 0.0f, 1000.0f, "s",                                                                     \
       "merged offsets return to rest with this time constant; 0: frozen (AWT 3.2)")                                    \
@@ -379,7 +381,7 @@ uint64_t awt_forest_hash(const awt_forest *forest);
 /* ---- exact state: snapshots and recordings ----------------------------------------------------------------------- */
 
 /* Goes up whenever the same inputs give other bits than before, or the state holds more than before. */
-#define AWT_PHYSICS_VERSION 2
+#define AWT_PHYSICS_VERSION 3
 
 /* Writes everything that the forest's future depends on, its groom included: restored, in another process or on
  * another machine, it goes on to the bit as if it had never stopped, poses that wait included. *size is always set to

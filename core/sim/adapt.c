@@ -141,10 +141,10 @@ static void adapt_rebase(awt_forest *f, uint32_t t)
     }
 }
 
-adapt_counts adapt_tree(awt_forest *f, uint32_t t)
+adapt_counts adapt_tree(awt_forest *f, uint32_t t, uint32_t budget)
 {
     const awt_groom *groom = f->groom;
-    adapt_counts counts = {0, 0};
+    adapt_counts counts = {0};
     bool baked = false;
     uint32_t lo = t, hi = t + 1;
     do {
@@ -152,7 +152,9 @@ adapt_counts adapt_tree(awt_forest *f, uint32_t t)
             fusion super;
             bool merges = merge_due(f, g, &super);
             bool splits = !merges && split_due(f, g);
-            if (!merges && !splits) {
+            bool refused = splits && counts.splits == budget;
+            counts.refused += refused;
+            if (refused || (!merges && !splits)) {
                 continue;
             }
             if (!baked) {
@@ -172,4 +174,31 @@ adapt_counts adapt_tree(awt_forest *f, uint32_t t)
         adapt_rebase(f, t);
     }
     return counts;
+}
+
+static uint32_t adapt_budget(const awt_params *p)
+{
+    return p->split_budget > 0.0f ? (uint32_t)ceilf(p->split_budget) : UINT32_MAX;
+}
+
+/* The next step begins with the first tree refused, but not with the same one as this step unless it is the only one:
+ * its share has been given to it, and others wait. */
+adapt_counts adapt_forest(awt_forest *f)
+{
+    const uint32_t trees = f->groom->info.wisp_count[0], from = f->split_from, budget = adapt_budget(&f->params);
+    adapt_counts all = {0};
+    for (uint32_t n = 0; n < trees; n++) {
+        uint32_t t = n < trees - from ? from + n : from + n - trees;
+        if (f->trees[t].asleep) {
+            continue;
+        }
+        adapt_counts counts = adapt_tree(f, t, budget - all.splits);
+        if (counts.refused > 0 && f->split_from == from) {
+            f->split_from = t;
+        }
+        all.splits += counts.splits;
+        all.merges += counts.merges;
+        all.refused += counts.refused;
+    }
+    return all;
 }

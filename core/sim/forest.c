@@ -256,6 +256,7 @@ uint64_t awt_forest_hash(const awt_forest *f)
     uint64_t hash = hash_u64(HASH_SEED, (uint64_t)f->time_us);
     hash = hash_words(hash, f->first_split, groom->gc_count);
     hash = hash_words(hash, f->event_us, 2 * (size_t)groom->gc_count);
+    hash = hash_words(hash, &f->split_from, 1);
     hash = hash_words(hash, &f->still_s, 1);
     hash = hash_words(hash, &f->frame_velocity, sizeof f->frame_velocity / 4);
     for (uint32_t k = 0; k < TRACK_OWN + f->track.own_count; k++) {

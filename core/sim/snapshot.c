@@ -204,6 +204,7 @@ static awt_status walk_motion(codec *c, snapshot *s)
 
 static awt_status walk_trees(codec *c, snapshot *s)
 {
+    codec_u32(c, &s->forest->split_from);
     for (uint32_t t = 0; t < s->groom->info.wisp_count[0]; t++) {
         codec_bool(c, &s->forest->trees[t].asleep);
         codec_bool(c, &s->forest->trees[t].loose);

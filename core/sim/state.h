@@ -69,6 +69,7 @@ struct awt_forest {
     /* the AWTs; per GC, [gc_count] */
     uint32_t *first_split; /* node (g, i) is active iff first_split[super(g)] <= i < first_split[g] */
     int64_t *event_us;     /* time of the last split or merge of this GC */
+    uint32_t split_from;   /* tree that is asked first for splits in the next step (adapt.c) */
 
     /* per node, [gc_count * sections] */
     vec3 *position, *velocity;

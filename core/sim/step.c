@@ -85,10 +85,14 @@ void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_s
             continue;
         }
         step_tree(f, t, dt_s, stats);
-        adapt_counts counts = adapt_tree(f, t);
-        stats->splits += counts.splits;
-        stats->merges += counts.merges;
-        rest_observe(f, &f->trees[t], world_is_still, dt_s);
+    }
+    adapt_counts counts = adapt_forest(f);
+    stats->splits += counts.splits;
+    stats->merges += counts.merges;
+    for (uint32_t t = 0; t < trees; t++) {
+        if (!f->trees[t].asleep) {
+            rest_observe(f, &f->trees[t], world_is_still, dt_s);
+        }
     }
     stats->steps++;
 }

@@ -99,7 +99,7 @@ static void watch_tree(awt_forest *f, uint32_t t, watched *w)
         measure[n] = vec3_length(f->acceleration[n]) * f->radius[n];
     }
     totals old = tree_totals(f, t);
-    adapt_counts counts = adapt_tree(f, t);
+    adapt_counts counts = adapt_tree(f, t, UINT32_MAX);
     totals now = tree_totals(f, t);
 
     uint32_t splits = 0, merges = 0;

@@ -109,6 +109,7 @@ TEST(every_parameter_has_its_effect)
         {"merge_velocity", 0.01f, BOTH},
 
         {"residence", 0.02f, BOTH},
+        {"split_budget", 1, BOTH},
         {"acceleration_tau", 0, BOTH},
         {"offset_relaxation", 0, BOTH},
         {"length_relaxation", 0, BOTH},

@@ -222,7 +222,7 @@ static void ledger_adapt(ledger *l, awt_forest *f, uint32_t t, uint32_t *before)
     const awt_groom *groom = f->groom;
     double mass, mass_after, energy = tree_energy(f, &f->trees[t], &mass), loss = 0;
     memcpy(before, f->first_split, groom->gc_count * sizeof *before);
-    adapt_counts counts = adapt_tree(f, t);
+    adapt_counts counts = adapt_tree(f, t, UINT32_MAX);
     if (counts.merges + counts.splits == 0) {
         return;
     }
