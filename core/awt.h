@@ -153,6 +153,8 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
     X(wind_x, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
     X(wind_y, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
     X(wind_z, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
+    X(wind_gust, 0.0f, 0.0f, 10.0f, "", "strongest gust, as a share of the wind; gusts travel with it; 0: none")       \
+    X(gust_period, 3.0f, 0.1f, 600.0f, "s", "gusts: time from one to the next, roughly")                               \
     X(speed_limit, 20.0f, 0.1f, 1000.0f, "m/s", "nodes never move faster than this relative to the head")              \
     X(settling, 5.0f, 0.0f, 1000.0f, "1/s2",                                                                           \
       "drag that comes up once head and obstacles have been still for 1.5 s; 0: none")                                 \

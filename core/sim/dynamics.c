@@ -36,11 +36,14 @@ static void dynamics_begin(awt_forest *f, const tree *t, float dt_s)
 static void dynamics_load(awt_forest *f, const tree *t, float dt_s)
 {
     const awt_params *p = &f->params;
-    vec3 gravity = {p->gravity_x, p->gravity_y, p->gravity_z}, wind = {p->wind_x, p->wind_y, p->wind_z};
-    vec3 outside = vec3_mad(vec3_sub(gravity, f->frame_acceleration), wind, p->drag);
+    vec3 gravity = {p->gravity_x, p->gravity_y, p->gravity_z};
+    vec3 calm = vec3_sub(gravity, f->frame_acceleration), outside = vec3_mad(calm, f->wind.mean, p->drag);
     float slowing = 1.0f / (1.0f + dt_s * (p->drag + rest_drag(f)));
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
         vec3 preload = mat3_apply(f->head, f->active_preload[k]);
+        if (f->wind.gusts) {
+            outside = vec3_mad(calm, wind_at(&f->wind, f->position[f->active_node[k]]), p->drag);
+        }
         f->next[k] = vec3_scale(vec3_mad(f->next[k], vec3_add(outside, preload), dt_s), slowing);
     }
 }

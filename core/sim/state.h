@@ -17,6 +17,7 @@
 #include "groom/groom.h"
 #include "sim/grid.h"
 #include "sim/track.h"
+#include "sim/wind.h"
 
 /* One AWT (§2.3): the active nodes of a top-level GC, in the slots first .. first + count - 1 of the active
  * arrays, by cross-section, so that parents come before children. Slot `first` is the root. */
@@ -62,6 +63,7 @@ struct awt_forest {
     vec3 head_spin;               /* rad/s, world axes */
     dvec3 frame_velocity;         /* of the head's centre during the last sub-step */
     vec3 frame_acceleration;
+    wind_field wind; /* in this sub-step */
     obstacle obstacles[AWT_MAX_COLLIDERS];
     dquat still_orientation; /* of the head, when the world was last not still (rest.c) */
     float still_s;           /* for so long the world has been still */

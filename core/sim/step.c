@@ -76,6 +76,7 @@ void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_s
     step_pose(f, sample_us, dt_s, before);
     stats->contacts += contact_resolve(f, dt_s);
     stats->contacts_left_out += f->contacts_left_out;
+    f->wind = wind_blow(&f->params, end_us, f->pose[TRACK_HEAD].position);
     bool world_is_still = rest_world_is_still(f, dt_s);
     rest_sleepers(f, world_is_still, before[TRACK_HEAD].orientation);
     f->time_us = end_us;

@@ -123,6 +123,7 @@ TEST(every_parameter_has_its_effect)
         {"wind_x", 0, BOTH},
         {"wind_y", 0, BOTH},
         {"wind_z", 0, BOTH},
+        {"wind_gust", 0.3f, BOTH},
         {"speed_limit", 0.3f, BOTH},
         {"settling", 3.0f, BOTH},
         {"links", 1, RIGID},
