@@ -133,6 +133,10 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
 #define AWT_PARAM_LIST(X)                                                                                              \
     X(split_threshold, 0.30f, 0.0f, 1e9f, "m2/s2", "AWT 3.1: a node splits where |a| * radius exceeds this")           \
     X(split_hysteresis, 0.5f, 0.0f, 1.0f, "", "merge only where |a| * radius is under this share of the threshold")    \
+    X(split_contact, 0.0f, 0.0f, 10.0f, "",                                                                            \
+      "AWT 5.3: weight of what contacts between wisps do to a node, beside |a|; 0: none")                              \
+    X(split_wind, 0.0f, 0.0f, 10.0f, "",                                                                               \
+      "AWT 5.3: weight of gusts and of motion through the air, beside |a|; 0: none")                                   \
     X(merge_velocity, 0.12f, 0.0f, 100.0f, "m/s", "AWT 3.2: greatest relative speed of nodes that merge")              \
     X(merge_slack, 1.5f, 1.0f, 100.0f, "", "AWT 3.2: nodes merge within this many radii of their super-node")          \
     X(residence, 0.08f, 0.0f, 10.0f, "s", "least time between two events of one wisp")                                 \

@@ -6,6 +6,8 @@
 #include "sim/rest.h"
 #include "sim/joint.h"
 
+#include <string.h>
+
 /* The turn of every segment from rest to now, and its tangent. */
 static void dynamics_turns(awt_forest *f, const tree *t)
 {
@@ -93,4 +95,35 @@ uint32_t dynamics_finish(awt_forest *f, const tree *t, float dt_s)
         f->link_length[node] += (f->active_rest_length[k] - f->link_length[node]) * relax;
     }
     return clamped;
+}
+
+/* ---- what may split a wisp besides its acceleration (AWT §5.3) --------------------------------------------------- */
+
+static bool dynamics_agitates(const awt_params *p)
+{
+    return p->split_contact > 0.0f || p->split_wind > 0.0f;
+}
+
+void dynamics_agitate(awt_forest *f, const tree *t, float dt_s)
+{
+    const awt_params *p = &f->params;
+    if (!dynamics_agitates(p)) {
+        return;
+    }
+    float filter = relaxation_share(dt_s, p->acceleration_tau), by_contact = p->split_contact / dt_s;
+    float by_air = p->split_wind * p->drag;
+    for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
+        uint32_t node = f->active_node[k];
+        vec3 gust = vec3_scale(f->wind.mean, wind_gust_at(&f->wind, f->position[node]));
+        float agitation = by_contact * vec3_length(f->active_push[k]) + by_air * vec3_distance(gust, f->velocity[node]);
+        f->agitation[node] += (agitation - f->agitation[node]) * filter;
+    }
+}
+
+void dynamics_calm(awt_forest *f)
+{
+    size_t nodes = (size_t)f->groom->gc_count * f->groom->info.sections;
+    if (!dynamics_agitates(&f->params)) {
+        memset(f->agitation, 0, nodes * sizeof *f->agitation);
+    }
 }

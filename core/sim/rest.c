@@ -111,6 +111,7 @@ void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s)
     t->asleep = true;
     for (uint32_t k = t->first; k < t->first + t->count; k++) {
         f->velocity[f->active_node[k]] = f->acceleration[f->active_node[k]] = (vec3){0, 0, 0};
+        f->agitation[f->active_node[k]] = 0.0f;
     }
 }
 

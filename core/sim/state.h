@@ -7,8 +7,8 @@
  * rebasing; a frame that rides on the head meets the same promises with no event at all.)
  *
  * Node (g, i) has index g * sections + i, as in the groom. Which arrays are meaningful for which nodes: active nodes
- * have position, velocity, acceleration, radius, link and reference; nodes below an active one have an offset;
- * finest nodes have a frame always. */
+ * have position, velocity, acceleration, agitation, radius, link and reference; nodes below an active one have an
+ * offset; finest nodes have a frame always. */
 #ifndef SIM_STATE_H
 #define SIM_STATE_H
 
@@ -76,6 +76,7 @@ struct awt_forest {
     /* per node, [gc_count * sections] */
     vec3 *position, *velocity;
     vec3 *acceleration; /* in the world, filtered */
+    float *agitation;   /* m/s2: what contacts and air do to it, weighted, filtered alike; 0 with no weights */
     float *radius;
     float *link_length;    /* this step's target */
     uint32_t *parent_node; /* of the AWT; a root's: itself; STATE_NO_PARENT where not active */

@@ -58,6 +58,7 @@ static float step_link_error(const awt_forest *f, const tree *t)
 static void step_tree(awt_forest *f, uint32_t index, float dt_s, awt_step_stats *stats)
 {
     tree *t = &f->trees[index];
+    dynamics_agitate(f, t, dt_s);
     dynamics_predict(f, t, dt_s);
     if (!joint_links_are_springs(f)) {
         links_project(f, t);

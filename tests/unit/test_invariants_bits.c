@@ -106,6 +106,8 @@ TEST(every_parameter_has_its_effect)
     static const param_change changes[] = {
         {"split_threshold", 0.1f, BOTH},
         {"split_hysteresis", 0.1f, BOTH},
+        {"split_contact", 1, BOTH},
+        {"split_wind", 1, BOTH},
         {"merge_velocity", 0.01f, BOTH},
 
         {"residence", 0.02f, BOTH},

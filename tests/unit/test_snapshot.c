@@ -441,6 +441,7 @@ TEST(a_snapshot_that_lies_is_refused_by_the_section_that_lies)
         {"EVNT", 4, 0x7fffffffu, "EVNT"},                     /* in the future */
         {"NPOS", 0, bits_of(NAN), "NPOS"},                    /* */
         {"NVEL", 0, bits_of(1e7f), "NVEL"},                   /* */
+        {"NAGI", 0, bits_of(-1.0f), "NAGI"},                  /* */
         {"NRAD", 0, bits_of(-1.0f), "NRAD"},                  /* */
         {"NFRM", 12, bits_of(NAN), "NFRM"},                   /* */
         {"MOTN", 4, 0x7fffffffu, "MOTN"},                     /* now, far from now */
