@@ -133,9 +133,15 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
 #define AWT_PARAM_LIST(X)                                                                                              \
     X(split_threshold, 0.30f, 0.0f, 1e9f, "m2/s2", "AWT 3.1: a node splits where |a| * radius exceeds this")           \
     X(split_hysteresis, 0.5f, 0.0f, 1.0f, "", "merge only where |a| * radius is under this share of the threshold")    \
+    X(split_contact, 0.0f, 0.0f, 10.0f, "",                                                                            \
+      "AWT 5.3: weight of what contacts between wisps do to a node, beside |a|; 0: none")                              \
+    X(split_wind, 0.0f, 0.0f, 10.0f, "",                                                                               \
+      "AWT 5.3: weight of gusts and of motion through the air, beside |a|; 0: none")                                   \
     X(merge_velocity, 0.12f, 0.0f, 100.0f, "m/s", "AWT 3.2: greatest relative speed of nodes that merge")              \
     X(merge_slack, 1.5f, 1.0f, 100.0f, "", "AWT 3.2: nodes merge within this many radii of their super-node")          \
     X(residence, 0.08f, 0.0f, 10.0f, "s", "least time between two events of one wisp")                                 \
+    X(split_budget, 0.0f, 0.0f, 1e6f, "",                                                                              \
+      "most splits of the whole head in a step, rounded up; what is left over splits in the next ones; 0: no limit")   \
     X(acceleration_tau, 0.040f, 0.0f, 1.0f, "s", "time constant of the filtered acceleration")                         \
     X(offset_relaxation, 1.5f, 0.0f, 1000.0f, "s",                                                                     \
       "merged offsets return to rest with this time constant; 0: frozen (AWT 3.2)")                                    \
@@ -151,6 +157,8 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
     X(wind_x, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
     X(wind_y, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
     X(wind_z, 0.0f, -100.0f, 100.0f, "m/s", "wind relative to the head's own motion, world axes")                      \
+    X(wind_gust, 0.0f, 0.0f, 10.0f, "", "strongest gust, as a share of the wind; gusts travel with it; 0: none")       \
+    X(gust_period, 3.0f, 0.1f, 600.0f, "s", "gusts: time from one to the next, roughly")                               \
     X(speed_limit, 20.0f, 0.1f, 1000.0f, "m/s", "nodes never move faster than this relative to the head")              \
     X(settling, 5.0f, 0.0f, 1000.0f, "1/s2",                                                                           \
       "drag that comes up once head and obstacles have been still for 1.5 s; 0: none")                                 \
@@ -379,7 +387,7 @@ uint64_t awt_forest_hash(const awt_forest *forest);
 /* ---- exact state: snapshots and recordings ----------------------------------------------------------------------- */
 
 /* Goes up whenever the same inputs give other bits than before, or the state holds more than before. */
-#define AWT_PHYSICS_VERSION 2
+#define AWT_PHYSICS_VERSION 3
 
 /* Writes everything that the forest's future depends on, its groom included: restored, in another process or on
  * another machine, it goes on to the bit as if it had never stopped, poses that wait included. *size is always set to

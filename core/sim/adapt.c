@@ -9,11 +9,11 @@
 #include "sim/rest.h"
 #include "sim/tree.h"
 
-/* The super-node that stands for the sub-nodes of (g, i): centre of mass, mean velocity and acceleration by mass,
- * and the radius that just contains them (§3.2). Sums in double: nothing is lost. */
+/* The super-node that stands for the sub-nodes of (g, i): centre of mass, mean velocity, acceleration and agitation by
+ * mass, and the radius that just contains them (§3.2). Sums in double: nothing is lost. */
 typedef struct fusion {
     vec3 position, velocity, acceleration;
-    float radius;
+    float agitation, radius;
 } fusion;
 
 static fusion adapt_fuse(const awt_forest *f, uint32_t g, uint32_t i)
@@ -22,17 +22,18 @@ static fusion adapt_fuse(const awt_forest *f, uint32_t g, uint32_t i)
     const uint32_t sections = groom->info.sections;
     const uint32_t first = groom->gc_sub_first[g], end = first + groom->gc_sub_count[g];
     dvec3 x = {0, 0, 0}, v = {0, 0, 0}, a = {0, 0, 0};
-    double mass = 0;
+    double agitation = 0, mass = 0;
     for (uint32_t s = first; s < end; s++) {
         uint32_t node = s * sections + i;
         double m = groom->gc_strand_count[s];
         x = dvec3_add(x, dvec3_scale(dvec3_of_vec3(f->position[node]), m));
         v = dvec3_add(v, dvec3_scale(dvec3_of_vec3(f->velocity[node]), m));
         a = dvec3_add(a, dvec3_scale(dvec3_of_vec3(f->acceleration[node]), m));
+        agitation += (double)f->agitation[node] * m;
         mass += m;
     }
     fusion result = {vec3_of_dvec3(dvec3_scale(x, 1.0 / mass)), vec3_of_dvec3(dvec3_scale(v, 1.0 / mass)),
-                     vec3_of_dvec3(dvec3_scale(a, 1.0 / mass)), 0};
+                     vec3_of_dvec3(dvec3_scale(a, 1.0 / mass)), (float)(agitation / mass), 0};
     for (uint32_t s = first; s < end; s++) {
         uint32_t node = s * sections + i;
         float reach = vec3_distance(f->position[node], result.position) + f->radius[node];
@@ -41,10 +42,10 @@ static fusion adapt_fuse(const awt_forest *f, uint32_t g, uint32_t i)
     return result;
 }
 
-/* |a| * radius, the measure of §3.1. */
-static float split_measure(vec3 acceleration, float radius)
+/* |a| * radius, the measure of §3.1; beside |a| stands what §5.3 would add to it. */
+static float split_measure(vec3 acceleration, float agitation, float radius)
 {
-    return vec3_length(acceleration) * radius;
+    return (vec3_length(acceleration) + agitation) * radius;
 }
 
 /* Long enough since the last event of this GC? */
@@ -79,7 +80,8 @@ static bool merge_due(const awt_forest *f, uint32_t g, fusion *out)
             return false;
         }
     }
-    return split_measure(out->acceleration, out->radius) <= f->params.split_threshold * f->params.split_hysteresis;
+    return split_measure(out->acceleration, out->agitation, out->radius) <=
+           f->params.split_threshold * f->params.split_hysteresis;
 }
 
 static void merge_apply(awt_forest *f, uint32_t g, const fusion *super)
@@ -90,6 +92,7 @@ static void merge_apply(awt_forest *f, uint32_t g, const fusion *super)
     f->position[node] = super->position;
     f->velocity[node] = super->velocity;
     f->acceleration[node] = super->acceleration;
+    f->agitation[node] = super->agitation;
     f->radius[node] = super->radius;
     for (uint32_t s = groom->gc_sub_first[g]; s < groom->gc_sub_first[g] + groom->gc_sub_count[g]; s++) {
         f->offset[s * sections + i] = state_to_head(f, vec3_sub(f->position[s * sections + i], super->position));
@@ -107,7 +110,7 @@ static bool split_due(const awt_forest *f, uint32_t g)
         return false;
     }
     uint32_t node = g * groom->info.sections + i;
-    return split_measure(f->acceleration[node], f->radius[node]) > f->params.split_threshold;
+    return split_measure(f->acceleration[node], f->agitation[node], f->radius[node]) > f->params.split_threshold;
 }
 
 static void split_apply(awt_forest *f, uint32_t g)
@@ -121,6 +124,7 @@ static void split_apply(awt_forest *f, uint32_t g)
         f->position[sub] = vec3_add(f->position[node], mat3_apply(f->head, f->offset[sub]));
         f->velocity[sub] = f->velocity[node];
         f->acceleration[sub] = f->acceleration[node];
+        f->agitation[sub] = f->agitation[node];
         f->radius[sub] = groom->rest_radius[sub];
     }
 }
@@ -141,10 +145,10 @@ static void adapt_rebase(awt_forest *f, uint32_t t)
     }
 }
 
-adapt_counts adapt_tree(awt_forest *f, uint32_t t)
+adapt_counts adapt_tree(awt_forest *f, uint32_t t, uint32_t budget)
 {
     const awt_groom *groom = f->groom;
-    adapt_counts counts = {0, 0};
+    adapt_counts counts = {0};
     bool baked = false;
     uint32_t lo = t, hi = t + 1;
     do {
@@ -152,7 +156,9 @@ adapt_counts adapt_tree(awt_forest *f, uint32_t t)
             fusion super;
             bool merges = merge_due(f, g, &super);
             bool splits = !merges && split_due(f, g);
-            if (!merges && !splits) {
+            bool refused = splits && counts.splits == budget;
+            counts.refused += refused;
+            if (refused || (!merges && !splits)) {
                 continue;
             }
             if (!baked) {
@@ -172,4 +178,31 @@ adapt_counts adapt_tree(awt_forest *f, uint32_t t)
         adapt_rebase(f, t);
     }
     return counts;
+}
+
+static uint32_t adapt_budget(const awt_params *p)
+{
+    return p->split_budget > 0.0f ? (uint32_t)ceilf(p->split_budget) : UINT32_MAX;
+}
+
+/* The next step begins with the first tree refused, but not with the same one as this step unless it is the only one:
+ * its share has been given to it, and others wait. */
+adapt_counts adapt_forest(awt_forest *f)
+{
+    const uint32_t trees = f->groom->info.wisp_count[0], from = f->split_from, budget = adapt_budget(&f->params);
+    adapt_counts all = {0};
+    for (uint32_t n = 0; n < trees; n++) {
+        uint32_t t = n < trees - from ? from + n : from + n - trees;
+        if (f->trees[t].asleep) {
+            continue;
+        }
+        adapt_counts counts = adapt_tree(f, t, budget - all.splits);
+        if (counts.refused > 0 && f->split_from == from) {
+            f->split_from = t;
+        }
+        all.splits += counts.splits;
+        all.merges += counts.merges;
+        all.refused += counts.refused;
+    }
+    return all;
 }

@@ -6,6 +6,8 @@
 #include "sim/rest.h"
 #include "sim/joint.h"
 
+#include <string.h>
+
 /* The turn of every segment from rest to now, and its tangent. */
 static void dynamics_turns(awt_forest *f, const tree *t)
 {
@@ -36,11 +38,14 @@ static void dynamics_begin(awt_forest *f, const tree *t, float dt_s)
 static void dynamics_load(awt_forest *f, const tree *t, float dt_s)
 {
     const awt_params *p = &f->params;
-    vec3 gravity = {p->gravity_x, p->gravity_y, p->gravity_z}, wind = {p->wind_x, p->wind_y, p->wind_z};
-    vec3 outside = vec3_mad(vec3_sub(gravity, f->frame_acceleration), wind, p->drag);
+    vec3 gravity = {p->gravity_x, p->gravity_y, p->gravity_z};
+    vec3 calm = vec3_sub(gravity, f->frame_acceleration), outside = vec3_mad(calm, f->wind.mean, p->drag);
     float slowing = 1.0f / (1.0f + dt_s * (p->drag + rest_drag(f)));
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
         vec3 preload = mat3_apply(f->head, f->active_preload[k]);
+        if (f->wind.gusts) {
+            outside = vec3_mad(calm, wind_at(&f->wind, f->position[f->active_node[k]]), p->drag);
+        }
         f->next[k] = vec3_scale(vec3_mad(f->next[k], vec3_add(outside, preload), dt_s), slowing);
     }
 }
@@ -90,4 +95,35 @@ uint32_t dynamics_finish(awt_forest *f, const tree *t, float dt_s)
         f->link_length[node] += (f->active_rest_length[k] - f->link_length[node]) * relax;
     }
     return clamped;
+}
+
+/* ---- what may split a wisp besides its acceleration (AWT §5.3) --------------------------------------------------- */
+
+static bool dynamics_agitates(const awt_params *p)
+{
+    return p->split_contact > 0.0f || p->split_wind > 0.0f;
+}
+
+void dynamics_agitate(awt_forest *f, const tree *t, float dt_s)
+{
+    const awt_params *p = &f->params;
+    if (!dynamics_agitates(p)) {
+        return;
+    }
+    float filter = relaxation_share(dt_s, p->acceleration_tau), by_contact = p->split_contact / dt_s;
+    float by_air = p->split_wind * p->drag;
+    for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
+        uint32_t node = f->active_node[k];
+        vec3 gust = vec3_scale(f->wind.mean, wind_gust_at(&f->wind, f->position[node]));
+        float agitation = by_contact * vec3_length(f->active_push[k]) + by_air * vec3_distance(gust, f->velocity[node]);
+        f->agitation[node] += (agitation - f->agitation[node]) * filter;
+    }
+}
+
+void dynamics_calm(awt_forest *f)
+{
+    size_t nodes = (size_t)f->groom->gc_count * f->groom->info.sections;
+    if (!dynamics_agitates(&f->params)) {
+        memset(f->agitation, 0, nodes * sizeof *f->agitation);
+    }
 }

@@ -12,4 +12,13 @@ void dynamics_predict(awt_forest *f, const tree *t, float dt_s);
  * nodes the speed limit stopped. */
 uint32_t dynamics_finish(awt_forest *f, const tree *t, float dt_s);
 
+/* Before dynamics_predict, with this sub-step's pushes and wind: filters f->agitation, with the time constant of the
+ * acceleration. Contacts count by the change of velocity that they push a node to, per second. The air counts by the
+ * drag of gusts and of the node's own motion through it; the steady wind does not, for it bends all of a wisp alike and
+ * hair at rest in it is to be whole and asleep. Does nothing where neither has a weight. */
+void dynamics_agitate(awt_forest *f, const tree *t, float dt_s);
+
+/* After the parameters have changed: nothing remains of an agitation that no longer has any weight. */
+void dynamics_calm(awt_forest *f);
+
 #endif

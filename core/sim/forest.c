@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "sim/contact.h"
+#include "sim/dynamics.h"
 #include "sim/embed.h"
 #include "sim/obstacle.h"
 #include "sim/rest.h"
@@ -37,6 +38,7 @@ static void forest_lay_out(awt_forest *f, arena *a)
     f->position = ARENA_PUSH(a, vec3, nodes);
     f->velocity = ARENA_PUSH(a, vec3, nodes);
     f->acceleration = ARENA_PUSH(a, vec3, nodes);
+    f->agitation = ARENA_PUSH(a, float, nodes);
     f->radius = ARENA_PUSH(a, float, nodes);
     f->link_length = ARENA_PUSH(a, float, nodes);
     f->parent_node = ARENA_PUSH(a, uint32_t, nodes);
@@ -176,6 +178,7 @@ awt_status awt_forest_set_params(awt_forest *f, const awt_params *params, awt_er
     f->params = *params;
     rest_wake_all(f);
     contact_clear(f);
+    dynamics_calm(f);
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
         tree_rebuild(f, t); /* the style's targets depend on them */
     }
@@ -256,6 +259,7 @@ uint64_t awt_forest_hash(const awt_forest *f)
     uint64_t hash = hash_u64(HASH_SEED, (uint64_t)f->time_us);
     hash = hash_words(hash, f->first_split, groom->gc_count);
     hash = hash_words(hash, f->event_us, 2 * (size_t)groom->gc_count);
+    hash = hash_words(hash, &f->split_from, 1);
     hash = hash_words(hash, &f->still_s, 1);
     hash = hash_words(hash, &f->frame_velocity, sizeof f->frame_velocity / 4);
     for (uint32_t k = 0; k < TRACK_OWN + f->track.own_count; k++) {
@@ -270,6 +274,7 @@ uint64_t awt_forest_hash(const awt_forest *f)
             hash = hash_words(hash, &f->position[node], 3);
             hash = hash_words(hash, &f->velocity[node], 3);
             hash = hash_words(hash, &f->acceleration[node], 3);
+            hash = hash_words(hash, &f->agitation[node], 1);
             hash = hash_words(hash, &f->reference[node], 3);
             hash = hash_words(hash, &f->radius[node], 1);
             hash = hash_words(hash, &f->link_length[node], 1);

@@ -41,9 +41,9 @@ static float quiet_speed(const awt_forest *f)
 bool rest_world_is_still(awt_forest *f, float dt_s)
 {
     dquat now = f->pose[TRACK_HEAD].orientation;
-    bool still = vec3_length(f->head_spin) < REST_HEAD_SPIN &&
-                 vec3_length(f->frame_acceleration) < REST_HEAD_ACCELERATION &&
-                 fabs(dquat_dot(now, f->still_orientation)) > 1.0 - REST_TURNED && obstacles_are_still(f);
+    bool still =
+        vec3_length(f->head_spin) < REST_HEAD_SPIN && vec3_length(f->frame_acceleration) < REST_HEAD_ACCELERATION &&
+        fabs(dquat_dot(now, f->still_orientation)) > 1.0 - REST_TURNED && !f->wind.gusts && obstacles_are_still(f);
     if (!still) {
         f->still_orientation = now;
     }
@@ -111,6 +111,7 @@ void rest_observe(awt_forest *f, tree *t, bool world_is_still, float dt_s)
     t->asleep = true;
     for (uint32_t k = t->first; k < t->first + t->count; k++) {
         f->velocity[f->active_node[k]] = f->acceleration[f->active_node[k]] = (vec3){0, 0, 0};
+        f->agitation[f->active_node[k]] = 0.0f;
     }
 }
 

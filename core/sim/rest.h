@@ -5,8 +5,8 @@
 
 #include "sim/state.h"
 
-/* Is the world still around the head, so that trees may rest? Counts for how long. After step_pose has placed head and
- * obstacles. */
+/* Is the world still around the head, so that trees may rest? While the wind gusts it is not. Counts for how long.
+ * After step_pose has placed head and obstacles, and the sub-step's wind is known. */
 bool rest_world_is_still(awt_forest *f, float dt_s);
 
 /* Drag towards the head, 1/s, that comes up while the world stays still: a wisp that goes on swinging over an

@@ -24,7 +24,7 @@
 #define FASTEST_M_S 1e6
 #define FIERCEST_M_S2 1e12
 
-enum { GROOM_SPANS = 6, FOREST_SPANS = 11 };
+enum { GROOM_SPANS = 6, FOREST_SPANS = 12 };
 
 /* ---- arrays: section, kind, array, count, least, most ------------------------------------------------------------ */
 
@@ -53,6 +53,7 @@ static void forest_spans(const awt_forest *f, span out[FOREST_SPANS])
         {"NPOS", SPAN_F32, f->position, 3 * nodes, -SNAPSHOT_FARTHEST_M, SNAPSHOT_FARTHEST_M},
         {"NVEL", SPAN_F32, f->velocity, 3 * nodes, -FASTEST_M_S, FASTEST_M_S},
         {"NACC", SPAN_F32, f->acceleration, 3 * nodes, -FIERCEST_M_S2, FIERCEST_M_S2},
+        {"NAGI", SPAN_F32, f->agitation, nodes, 0, FIERCEST_M_S2},
         {"NRAD", SPAN_F32, f->radius, nodes, 0, SNAPSHOT_FARTHEST_M},
         {"NLNK", SPAN_F32, f->link_length, nodes, 0, SNAPSHOT_FARTHEST_M},
         {"NPAR", SPAN_U32, f->parent_node, nodes, 0, UINT32_MAX}, /* compared, never followed */
@@ -204,6 +205,7 @@ static awt_status walk_motion(codec *c, snapshot *s)
 
 static awt_status walk_trees(codec *c, snapshot *s)
 {
+    codec_u32(c, &s->forest->split_from);
     for (uint32_t t = 0; t < s->groom->info.wisp_count[0]; t++) {
         codec_bool(c, &s->forest->trees[t].asleep);
         codec_bool(c, &s->forest->trees[t].loose);

@@ -99,6 +99,9 @@ awt_status snapshot_check_splits(const awt_forest *f, awt_error *error)
 
 awt_status snapshot_check_trees(const awt_forest *f, awt_error *error)
 {
+    if (f->split_from >= f->groom->info.wisp_count[0]) {
+        return snapshot_damaged("TREE", error);
+    }
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
         const tree *tr = &f->trees[t];
         bool merged = tr->count == f->groom->info.sections;

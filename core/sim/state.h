@@ -7,8 +7,8 @@
  * rebasing; a frame that rides on the head meets the same promises with no event at all.)
  *
  * Node (g, i) has index g * sections + i, as in the groom. Which arrays are meaningful for which nodes: active nodes
- * have position, velocity, acceleration, radius, link and reference; nodes below an active one have an offset;
- * finest nodes have a frame always. */
+ * have position, velocity, acceleration, agitation, radius, link and reference; nodes below an active one have an
+ * offset; finest nodes have a frame always. */
 #ifndef SIM_STATE_H
 #define SIM_STATE_H
 
@@ -17,6 +17,7 @@
 #include "groom/groom.h"
 #include "sim/grid.h"
 #include "sim/track.h"
+#include "sim/wind.h"
 
 /* One AWT (§2.3): the active nodes of a top-level GC, in the slots first .. first + count - 1 of the active
  * arrays, by cross-section, so that parents come before children. Slot `first` is the root. */
@@ -62,6 +63,7 @@ struct awt_forest {
     vec3 head_spin;               /* rad/s, world axes */
     dvec3 frame_velocity;         /* of the head's centre during the last sub-step */
     vec3 frame_acceleration;
+    wind_field wind; /* in this sub-step */
     obstacle obstacles[AWT_MAX_COLLIDERS];
     dquat still_orientation; /* of the head, when the world was last not still (rest.c) */
     float still_s;           /* for so long the world has been still */
@@ -69,10 +71,12 @@ struct awt_forest {
     /* the AWTs; per GC, [gc_count] */
     uint32_t *first_split; /* node (g, i) is active iff first_split[super(g)] <= i < first_split[g] */
     int64_t *event_us;     /* time of the last split or merge of this GC */
+    uint32_t split_from;   /* tree that is asked first for splits in the next step (adapt.c) */
 
     /* per node, [gc_count * sections] */
     vec3 *position, *velocity;
     vec3 *acceleration; /* in the world, filtered */
+    float *agitation;   /* m/s2: what contacts and air do to it, weighted, filtered alike; 0 with no weights */
     float *radius;
     float *link_length;    /* this step's target */
     uint32_t *parent_node; /* of the AWT; a root's: itself; STATE_NO_PARENT where not active */

@@ -58,6 +58,7 @@ static float step_link_error(const awt_forest *f, const tree *t)
 static void step_tree(awt_forest *f, uint32_t index, float dt_s, awt_step_stats *stats)
 {
     tree *t = &f->trees[index];
+    dynamics_agitate(f, t, dt_s);
     dynamics_predict(f, t, dt_s);
     if (!joint_links_are_springs(f)) {
         links_project(f, t);
@@ -76,6 +77,7 @@ void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_s
     step_pose(f, sample_us, dt_s, before);
     stats->contacts += contact_resolve(f, dt_s);
     stats->contacts_left_out += f->contacts_left_out;
+    f->wind = wind_blow(&f->params, end_us, f->pose[TRACK_HEAD].position);
     bool world_is_still = rest_world_is_still(f, dt_s);
     rest_sleepers(f, world_is_still, before[TRACK_HEAD].orientation);
     f->time_us = end_us;
@@ -85,10 +87,14 @@ void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_s
             continue;
         }
         step_tree(f, t, dt_s, stats);
-        adapt_counts counts = adapt_tree(f, t);
-        stats->splits += counts.splits;
-        stats->merges += counts.merges;
-        rest_observe(f, &f->trees[t], world_is_still, dt_s);
+    }
+    adapt_counts counts = adapt_forest(f);
+    stats->splits += counts.splits;
+    stats->merges += counts.merges;
+    for (uint32_t t = 0; t < trees; t++) {
+        if (!f->trees[t].asleep) {
+            rest_observe(f, &f->trees[t], world_is_still, dt_s);
+        }
     }
     stats->steps++;
 }

@@ -43,6 +43,7 @@ awt_params bench_single_level(awt_params params)
 {
     params.split_threshold = 0;
     params.residence = 0;
+    params.split_budget = 0;
     return params;
 }
 

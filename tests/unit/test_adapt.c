@@ -82,6 +82,21 @@ typedef struct watched {
     double mass, momentum, centre, energy_split, energy_merge_rise, pop;
 } watched;
 
+/* Is the node that stands for the sub-nodes of (g, i) quiet enough, and as agitated as they were on the average? */
+static bool merged_in_peace(const awt_forest *f, uint32_t g, uint32_t i)
+{
+    const awt_groom *groom = f->groom;
+    const uint32_t sections = groom->info.sections, node = g * sections + i;
+    double agitation = 0, mass = 0;
+    for (uint32_t s = groom->gc_sub_first[g]; s < groom->gc_sub_first[g] + groom->gc_sub_count[g]; s++) {
+        agitation += (double)f->agitation[s * sections + i] * groom->gc_strand_count[s];
+        mass += groom->gc_strand_count[s];
+    }
+    float measure = (vec3_length(f->acceleration[node]) + f->agitation[node]) * f->radius[node];
+    return measure <= f->params.split_threshold * f->params.split_hysteresis &&
+           fabs((double)f->agitation[node] - agitation / mass) <= 1e-6 * agitation / mass;
+}
+
 static void worse(double *worst, double value)
 {
     *worst = value > *worst ? value : *worst;
@@ -96,10 +111,10 @@ static void watch_tree(awt_forest *f, uint32_t t, watched *w)
     float *measure = malloc((size_t)groom->gc_count * sections * sizeof *measure);
     memcpy(before, f->first_split, groom->gc_count * sizeof *before);
     for (uint32_t n = 0; n < groom->gc_count * sections; n++) {
-        measure[n] = vec3_length(f->acceleration[n]) * f->radius[n];
+        measure[n] = (vec3_length(f->acceleration[n]) + f->agitation[n]) * f->radius[n];
     }
     totals old = tree_totals(f, t);
-    adapt_counts counts = adapt_tree(f, t);
+    adapt_counts counts = adapt_tree(f, t, UINT32_MAX);
     totals now = tree_totals(f, t);
 
     uint32_t splits = 0, merges = 0;
@@ -116,6 +131,7 @@ static void watch_tree(awt_forest *f, uint32_t t, watched *w)
         } else { /* root to tip */
             merges++;
             w->bad_order += i != before[g] + 1;
+            w->bad_measure += !merged_in_peace(f, g, before[g]);
         }
         w->bad_order += groom->gc_super[g] != g && f->first_split[groom->gc_super[g]] > i;
     }
@@ -135,10 +151,12 @@ static void watch_tree(awt_forest *f, uint32_t t, watched *w)
     free(measure);
 }
 
-static watched watch_lean(const char *style, const double at[3], const double velocity[3])
+/* `weight`: of contact and air in the split measure. */
+static watched watch_lean(const char *style, float weight, const double at[3], const double velocity[3])
 {
     const awt_groom *groom = fixture_groom(style, STRANDS);
     awt_forest *f = fixture_forest(groom, style, at, velocity);
+    f->params.split_contact = f->params.split_wind = weight;
     const awt_params wanted = f->params;
     size_t points = (size_t)groom->info.strand_count * groom->info.points_per_strand;
     float *centres = malloc((size_t)groom->info.finest_nodes * 3 * sizeof(float));
@@ -185,7 +203,7 @@ static void check_watched(const watched *w)
 TEST(splits_and_merges_keep_partition_mass_momentum_centre_energy_and_every_strand)
 {
     const double still[3] = {0, 0, 0}, home[3] = {0, 0, 0};
-    watched straight = watch_lean("long", home, still), curly = watch_lean("long-curly", home, still);
+    watched straight = watch_lean("long", 0, home, still), curly = watch_lean("long-curly", 0, home, still);
     check_watched(&straight);
     check_watched(&curly);
 }
@@ -193,7 +211,14 @@ TEST(splits_and_merges_keep_partition_mass_momentum_centre_energy_and_every_stra
 TEST(splits_and_merges_keep_all_that_at_ten_metres_a_second_100_km_from_zero)
 {
     const double fast[3] = {10, 0, 0}, far_away[3] = {1e5, 0, -1e5};
-    watched w = watch_lean("long", far_away, fast);
+    watched w = watch_lean("long", 0, far_away, fast);
+    check_watched(&w);
+}
+
+TEST(splits_and_merges_keep_all_that_where_contact_and_air_split_too)
+{
+    const double still[3] = {0, 0, 0}, home[3] = {0, 0, 0};
+    watched w = watch_lean("long", 1, home, still);
     check_watched(&w);
 }
 
@@ -243,6 +268,8 @@ TEST(a_wisp_that_opens_again_remembers_nothing_of_its_last_opening)
     const double zero[3] = {0, 0, 0};
     const awt_groom *groom = fixture_groom("long", STRANDS);
     awt_forest *clean = fixture_forest(groom, "long", zero, zero), *stale = fixture_forest(groom, "long", zero, zero);
+    clean->params.split_contact = clean->params.split_wind = 1;
+    stale->params = clean->params;
     float shortest = 1;
     for (int n = 1; n <= 500; n++) {
         for (uint32_t k = 0; k < groom->gc_count * groom->info.sections; k++) {
@@ -252,6 +279,7 @@ TEST(a_wisp_that_opens_again_remembers_nothing_of_its_last_opening)
             if (!active) {
                 stale->link_length[k] = 7.0f;
                 stale->radius[k] = 8.0f;
+                stale->agitation[k] = 9.0f;
                 stale->position[k] = stale->velocity[k] = stale->acceleration[k] = (vec3){9, 9, 9};
             }
         }

@@ -106,9 +106,12 @@ TEST(every_parameter_has_its_effect)
     static const param_change changes[] = {
         {"split_threshold", 0.1f, BOTH},
         {"split_hysteresis", 0.1f, BOTH},
+        {"split_contact", 1, BOTH},
+        {"split_wind", 1, BOTH},
         {"merge_velocity", 0.01f, BOTH},
 
         {"residence", 0.02f, BOTH},
+        {"split_budget", 1, BOTH},
         {"acceleration_tau", 0, BOTH},
         {"offset_relaxation", 0, BOTH},
         {"length_relaxation", 0, BOTH},
@@ -122,6 +125,7 @@ TEST(every_parameter_has_its_effect)
         {"wind_x", 0, BOTH},
         {"wind_y", 0, BOTH},
         {"wind_z", 0, BOTH},
+        {"wind_gust", 0.3f, BOTH},
         {"speed_limit", 0.3f, BOTH},
         {"settling", 3.0f, BOTH},
         {"links", 1, RIGID},

@@ -441,13 +441,15 @@ TEST(a_snapshot_that_lies_is_refused_by_the_section_that_lies)
         {"EVNT", 4, 0x7fffffffu, "EVNT"},                     /* in the future */
         {"NPOS", 0, bits_of(NAN), "NPOS"},                    /* */
         {"NVEL", 0, bits_of(1e7f), "NVEL"},                   /* */
+        {"NAGI", 0, bits_of(-1.0f), "NAGI"},                  /* */
         {"NRAD", 0, bits_of(-1.0f), "NRAD"},                  /* */
         {"NFRM", 12, bits_of(NAN), "NFRM"},                   /* */
         {"MOTN", 4, 0x7fffffffu, "MOTN"},                     /* now, far from now */
         {"MOTN", 92, 0x7ff80000u, "MOTN"},                    /* the head's pose: no number */
-        {"TREE", split * 10, 1, "TREE"},                      /* asleep while split */
-        {"TREE", 2, bits_of(-1.0f), "TREE"},                  /* */
-        {"TREE", 6, bits_of(NAN), "TREE"},                    /* */
+        {"TREE", 0, g->info.wisp_count[0], "TREE"},           /* the next splits of a tree that is not there */
+        {"TREE", 4 + split * 10, 1, "TREE"},                  /* asleep while split */
+        {"TREE", 6, bits_of(-1.0f), "TREE"},                  /* */
+        {"TREE", 10, bits_of(NAN), "TREE"},                   /* */
         {"MOTN", waiting - 3 * 112 - 5, 0x7fffffffu, "MOTN"}, /* a pose that waits for a time beyond time */
     };
     for (size_t k = 0; k < sizeof lies / sizeof lies[0]; k++) {
