@@ -134,7 +134,7 @@ took "the most violent motion"
 all_bits
 took "same bits"
 fuzzer
-for target in strands hierarchy motion message snapshot frame json; do
+for target in strands hierarchy motion message snapshot frame json delta; do
     fuzz "$target"
 done
 took fuzzing

@@ -13,7 +13,7 @@ typedef struct fuzz_target {
     void (*seed)(void (*give)(const void *bytes, size_t size));
 } fuzz_target;
 
-enum { FUZZ_TARGETS = 7 };
+enum { FUZZ_TARGETS = 8 };
 extern const fuzz_target fuzz_targets[FUZZ_TARGETS];
 
 void fuzz_seed_strands(void (*give)(const void *bytes, size_t size));
@@ -23,5 +23,9 @@ void fuzz_seed_message(void (*give)(const void *bytes, size_t size));
 void fuzz_seed_snapshot(void (*give)(const void *bytes, size_t size));
 void fuzz_seed_frame(void (*give)(const void *bytes, size_t size));
 void fuzz_seed_json(void (*give)(const void *bytes, size_t size));
+
+/* delta.c has both. */
+void fuzz_run_delta(const uint8_t *bytes, size_t size);
+void fuzz_seed_delta(void (*give)(const void *bytes, size_t size));
 
 #endif

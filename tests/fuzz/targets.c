@@ -162,4 +162,5 @@ const fuzz_target fuzz_targets[FUZZ_TARGETS] = {
     {"snapshot", snapshot_run, fuzz_seed_snapshot},
     {"frame", frame_run, fuzz_seed_frame},
     {"json", json_run, fuzz_seed_json},
+    {"delta", fuzz_run_delta, fuzz_seed_delta},
 };
