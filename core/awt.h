@@ -446,6 +446,14 @@ void awt_replay_destroy(awt_replay *replay);
 /* Finest-level cross-sections, active or not (§3.3), in the head frame:
  * centres [finest_nodes][3], frames [finest_nodes][4] (section frame to head frame; e_y along the wisp). */
 void awt_forest_guides(const awt_forest *forest, float *centres, float *frames);
+/* The same for the sections under the top-level wisps that wisps [wisp_count[0]] names; the others stay as they are. */
+void awt_forest_guides_of(const awt_forest *forest, const bool *wisps, float *centres, float *frames);
+
+/* What moved: sub-steps that the forest has made since it was created or restored, and moved [wisp_count[0]]: has
+ * anything of a top-level wisp moved in the head frame after sub-step number `since`? What sleeps moves only while its
+ * offsets relax. Returns how many moved. */
+uint64_t awt_forest_sub_steps(const awt_forest *forest);
+uint32_t awt_forest_moved(const awt_forest *forest, uint64_t since, bool *moved);
 
 /* One active node of an AWT (§2.3). */
 typedef struct awt_node {
@@ -463,6 +471,9 @@ uint32_t awt_forest_nodes(const awt_forest *forest, awt_node *out);
  * `scratch` holds awt_groom_strand_scratch(groom) floats. */
 void awt_groom_strands(const awt_groom *groom, const float *centres, const float *frames, float *scratch,
                        float *points);
+/* The same for strands under the top-level wisps that wisps [wisp_count[0]] names; the others stay as they are. */
+void awt_groom_strands_of(const awt_groom *groom, const bool *wisps, const float *centres, const float *frames,
+                          float *scratch, float *points);
 size_t awt_groom_strand_scratch(const awt_groom *groom);
 
 #ifdef __cplusplus

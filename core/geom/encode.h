@@ -53,6 +53,9 @@ typedef struct geom_patch {
     uint32_t first_strand, strands;
 } geom_patch;
 geom_patch geom_layout_patch(const geom_layout *layout, uint32_t index);
+/* The patches of which no top-level wisp has moved[wisp]: unchanged [geom_layout_patches], as geom_frame_def and
+ * geom_quantise_def take it. */
+void geom_layout_unchanged(const geom_layout *layout, const bool *moved, bool *unchanged);
 
 /* One encoder's working memory; one thread at a time. */
 typedef struct geom_scratch geom_scratch;

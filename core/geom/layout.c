@@ -19,14 +19,16 @@ static uint32_t first_line(const geom_layout *layout, const awt_groom *groom, ui
     return layout->kind == GEOM_GUIDES ? g : groom->gc_strand_first[g];
 }
 
-/* Adds `strands` to the last patch, or opens a new one where they do not fit. */
-static void add_strands(geom_layout *layout, uint32_t first_strand, uint32_t strands, uint32_t room)
+/* Adds `strands` of a tree to the last patch, or opens a new one where they do not fit. */
+static void add_strands(geom_layout *layout, uint32_t tree, uint32_t first_strand, uint32_t strands, uint32_t room)
 {
     geom_patch *last = layout->patch_count > 0 ? &layout->patches[layout->patch_count - 1] : NULL;
     if (last && last->strands + strands <= room) {
         last->strands += strands;
+        layout->patch_trees[layout->patch_count - 1].last = tree;
         return;
     }
+    layout->patch_trees[layout->patch_count] = (layout_trees){tree, tree};
     layout->patches[layout->patch_count++] = (geom_patch){first_strand, strands};
 }
 
@@ -42,7 +44,7 @@ static void fill_patches(geom_layout *layout, const awt_groom *groom, uint32_t r
         uint32_t strand = first_line(layout, groom, g);
         for (uint32_t left = first_line(layout, groom, after) - strand; left > 0;) {
             uint32_t taken = left < room ? left : room;
-            add_strands(layout, strand, taken, room);
+            add_strands(layout, tree[g], strand, taken, room);
             strand += taken;
             left -= taken;
         }
@@ -127,7 +129,8 @@ static bool make_arrays(geom_layout *layout, const awt_groom *groom)
     const uint32_t per_strand = layout->points_per_strand, room = GEOM_PATCH_POINTS / per_strand;
     const uint32_t bound = patch_bound(layout->strands, room);
     layout->patches = calloc(bound, sizeof *layout->patches);
-    if (!layout->patches) {
+    layout->patch_trees = calloc(bound, sizeof *layout->patch_trees);
+    if (!layout->patches || !layout->patch_trees) {
         return false;
     }
     fill_patches(layout, groom, room);
@@ -227,6 +230,7 @@ void geom_layout_destroy(geom_layout *layout)
         free(layout->meshes);
         free(layout->half_width);
         free(layout->patches);
+        free(layout->patch_trees);
         free(layout->indices);
         free(layout);
     }
@@ -240,4 +244,14 @@ uint32_t geom_layout_patches(const geom_layout *layout)
 geom_patch geom_layout_patch(const geom_layout *layout, uint32_t index)
 {
     return layout->patches[index];
+}
+
+void geom_layout_unchanged(const geom_layout *layout, const bool *moved, bool *unchanged)
+{
+    for (uint32_t i = 0; i < layout->patch_count; i++) {
+        unchanged[i] = true;
+        for (uint32_t t = layout->patch_trees[i].first; t <= layout->patch_trees[i].last; t++) {
+            unchanged[i] = unchanged[i] && !moved[t];
+        }
+    }
 }

@@ -9,6 +9,11 @@
 #include "geom/glb_template.h"
 #include "geom/ribbon.h"
 
+/* Top-level wisps that a patch is of: first .. last. */
+typedef struct layout_trees {
+    uint32_t first, last;
+} layout_trees;
+
 struct geom_layout {
     geom_kind kind;
     bool stock;
@@ -20,6 +25,7 @@ struct geom_layout {
     draco_box box;          /* one for all patches and all frames */
     quantise_bounds bounds; /* vertices are set onto them */
     geom_patch *patches;
+    layout_trees *patch_trees; /* [patch_count] */
     uint32_t patch_count;
     uint32_t largest_patch; /* strands */
     uint16_t *indices;      /* triangles of the largest patch; a smaller one uses the front of them */

@@ -148,6 +148,7 @@ void embed_relax(awt_forest *f, tree *t, float dt_s)
     }
     float share = relaxation_share(t->unrelaxed_s, f->params.offset_relaxation);
     t->unrelaxed_s = 0.0f;
+    t->moved = f->sub_steps;
     bool near = true;
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
         near = embed_relax_slot(f, k, share) && near;
@@ -180,9 +181,17 @@ static void embed_place(const awt_forest *f, uint32_t g, uint32_t i, vec3 centre
 
 void awt_forest_guides(const awt_forest *f, float *centres, float *frames)
 {
+    awt_forest_guides_of(f, NULL, centres, frames);
+}
+
+void awt_forest_guides_of(const awt_forest *f, const bool *wisps, float *centres, float *frames)
+{
     const uint32_t sections = f->groom->info.sections;
     for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
         const tree *tr = &f->trees[t];
+        if (wisps && !wisps[t]) {
+            continue;
+        }
         for (uint32_t k = tr->first; k < tr->first + tr->count; k++) {
             uint32_t node = f->active_node[k];
             embed_place(f, node / sections, node % sections, state_to_head(f, f->position[node]), embed_turn(f, tr, k),

@@ -191,6 +191,9 @@ void evaluate_hair(const evaluate_binding *binding, const float *centres, const 
     evaluate_lay_out(&table, &memory, sections, binding->points);
     for (uint32_t g = 0; g < binding->wisps; g++) {
         const uint32_t first = binding->strand_first[g];
+        if (binding->trees && !binding->trees[binding->tree[g]]) {
+            continue;
+        }
         evaluate_stations(&table, centre + (size_t)g * sections, frame + (size_t)g * sections);
         evaluate_strands(&table, binding->offsets + strand * first, binding->strand_first[g + 1] - first,
                          points + strand * first);

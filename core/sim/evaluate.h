@@ -48,6 +48,8 @@ typedef struct evaluate_binding {
     uint32_t points;              /* of a strand */
     const uint32_t *strand_first; /* [wisps + 1]; the last is how many strands there are */
     const float *offsets;         /* [strands][3][points] */
+    const uint32_t *tree;         /* [wisps]; with `trees` only */
+    const bool *trees;            /* wisps of these trees are evaluated, the others' points stay; NULL: all */
 } evaluate_binding;
 
 /* All strands, points [strands][points][3], from section centres [wisps * sections][3] and frames [..][4]. `scratch`

@@ -288,3 +288,18 @@ uint64_t awt_forest_hash(const awt_forest *f)
     }
     return hash_words(hash, f->frame, 4 * (size_t)groom->info.finest_nodes);
 }
+
+uint64_t awt_forest_sub_steps(const awt_forest *f)
+{
+    return f->sub_steps;
+}
+
+uint32_t awt_forest_moved(const awt_forest *f, uint64_t since, bool *moved)
+{
+    uint32_t count = 0;
+    for (uint32_t t = 0; t < f->groom->info.wisp_count[0]; t++) {
+        moved[t] = f->trees[t].moved > since;
+        count += moved[t];
+    }
+    return count;
+}

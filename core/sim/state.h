@@ -27,6 +27,7 @@ typedef struct tree {
     bool loose;        /* offsets, frames or radii are not what the groom's rest shape makes them (embed.c) */
     float quiet_s;     /* for so long it has hardly moved */
     float unrelaxed_s; /* for so long its offsets have not relaxed */
+    uint64_t moved;    /* number of the sub-step that last moved anything of it in the head frame; no state: 0 anew */
 } tree;
 
 /* parent_node of a node that is not active: whatever parent it gets is a new one. */
@@ -53,6 +54,7 @@ struct awt_forest {
     arena memory;
     awt_params params;
     int64_t time_us;
+    uint64_t sub_steps; /* since it was made or restored; no state */
     uint32_t collider_count;
     awt_collider colliders[AWT_MAX_COLLIDERS];
     track track;

@@ -59,6 +59,7 @@ static void step_tree(awt_forest *f, uint32_t index, float dt_s, awt_step_stats 
 {
     tree *t = &f->trees[index];
     dynamics_agitate(f, t, dt_s);
+    t->moved = f->sub_steps;
     dynamics_predict(f, t, dt_s);
     if (!joint_links_are_springs(f)) {
         links_project(f, t);
@@ -74,6 +75,7 @@ void step_run(awt_forest *f, int64_t end_us, double sample_us, float dt_s, awt_s
 {
     const uint32_t trees = f->groom->info.wisp_count[0];
     track_pose before[TRACK_COUNT];
+    f->sub_steps++;
     step_pose(f, sample_us, dt_s, before);
     stats->contacts += contact_resolve(f, dt_s);
     stats->contacts_left_out += f->contacts_left_out;
