@@ -132,12 +132,12 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
  * come from this list. Sources: the paper's §§ and PHYSICS.md's table. */
 #define AWT_PARAM_LIST(X)                                                                                              \
     X(split_threshold, 0.30f, 0.0f, 1e9f, "m2/s2", "AWT 3.1: a node splits where |a| * radius exceeds this")           \
-    X(split_hysteresis, 0.5f, 0.0f, 1.0f, "", "merge only where |a| * radius is under this share of the threshold")    \
+    X(split_hysteresis, 0.7f, 0.0f, 1.0f, "", "merge only where |a| * radius is under this share of the threshold")    \
     X(split_contact, 0.0f, 0.0f, 10.0f, "",                                                                            \
       "AWT 5.3: weight of what contacts between wisps do to a node, beside |a|; 0: none")                              \
     X(split_wind, 0.0f, 0.0f, 10.0f, "",                                                                               \
       "AWT 5.3: weight of gusts and of motion through the air, beside |a|; 0: none")                                   \
-    X(merge_velocity, 0.12f, 0.0f, 100.0f, "m/s", "AWT 3.2: greatest relative speed of nodes that merge")              \
+    X(merge_velocity, 0.15f, 0.0f, 100.0f, "m/s", "AWT 3.2: greatest relative speed of nodes that merge")              \
     X(merge_slack, 1.5f, 1.0f, 100.0f, "", "AWT 3.2: nodes merge within this many radii of their super-node")          \
     X(residence, 0.08f, 0.0f, 10.0f, "s", "least time between two events of one wisp")                                 \
     X(split_budget, 0.0f, 0.0f, 1e6f, "",                                                                              \
@@ -174,6 +174,8 @@ awt_status awt_strands_place(awt_strands *strands, awt_placement *placement, awt
     X(repulsion_omega, 30.0f, 0.0f, 300.0f, "rad/s", "AWT 4.2 (2): repulsion of crossing wisps, k_r = omega^2 * mass") \
     X(contact_angle, 35.0f, 0.0f, 90.0f, "deg",                                                                        \
       "AWT 4.2: wisps that cross at a greater angle than this repel each other")                                       \
+    X(obstacle_slip, 0.0f, 0.0f, 1.0f, "",                                                                             \
+      "share of its motion along an obstacle that hair keeps there; 0: it takes the obstacle's velocity (AWT 4.3)")    \
     X(relative_motion, 0.01f, 0.0f, 10.0f, "m/s", "AWT 4.1: wisps slower than this against each other do not touch")
 
 typedef struct awt_params {

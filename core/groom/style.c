@@ -9,17 +9,18 @@ typedef struct style_entry {
     style_look look;
 } style_entry;
 
-/* The defaults of AWT_PARAM_LIST, but for the three that each style has of its own. */
+/* The defaults of AWT_PARAM_LIST, but for the four that each style has of its own. */
 #define SAME_FIELD(a, b) (offsetof(awt_params, a) == offsetof(awt_params, b))
-#define STYLE_VALUE(name, value, threshold, omega, springs) \
-    .name = SAME_FIELD(name, split_threshold) ? (threshold) \
-            : SAME_FIELD(name, style_omega)   ? (omega)     \
-            : SAME_FIELD(name, links)         ? (springs)   \
+#define STYLE_VALUE(name, value, threshold, omega, springs, slip) \
+    .name = SAME_FIELD(name, split_threshold) ? (threshold)       \
+            : SAME_FIELD(name, style_omega)   ? (omega)           \
+            : SAME_FIELD(name, links)         ? (springs)         \
+            : SAME_FIELD(name, obstacle_slip) ? (slip)            \
                                               : (value),
-#define SHORT_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.26f, 30.0f, 0.0f)
-#define SHORT_CURLY_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.50f, 20.0f, 1.0f)
-#define LONG_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.50f, 20.0f, 0.0f)
-#define LONG_CURLY_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.50f, 15.0f, 1.0f)
+#define SHORT_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.26f, 30.0f, 0.0f, 0.0f)
+#define SHORT_CURLY_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.50f, 20.0f, 1.0f, 0.0f)
+#define LONG_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.50f, 20.0f, 0.0f, 0.0f)
+#define LONG_CURLY_PARAM(name, value, ...) STYLE_VALUE(name, value, 0.50f, 15.0f, 1.0f, 0.9f)
 
 static const style_entry style_table[] = {
     {.style = {.name = "short",

@@ -184,7 +184,7 @@ static bool turn_onto(vec3 parent, float length, vec3 centre, float radius, vec3
 }
 
 /* Keeps slot k out of one obstacle. False: the link kept it inside. */
-static bool obstacle_keep_out(awt_forest *f, uint32_t k, const obstacle *o, vec3 parent, float length)
+static bool obstacle_keep_out(awt_forest *f, uint32_t k, const obstacle *o, vec3 parent, float length, float dt_s)
 {
     vec3 apart = vec3_sub(f->next[k], o->middle);
     if (vec3_dot(apart, apart) >= o->reach * o->reach) {
@@ -205,8 +205,16 @@ static bool obstacle_keep_out(awt_forest *f, uint32_t k, const obstacle *o, vec3
     if (!turn_onto(parent, length, centre, radius, &f->next[k])) {
         return false;
     }
+    const uint32_t node = f->active_node[k];
     vec3 arm = vec3_sub(f->next[k], o->origin);
-    f->velocity[f->active_node[k]] = vec3_add(o->velocity, vec3_cross(o->spin, arm));
+    vec3 surface = vec3_add(o->velocity, vec3_cross(o->spin, arm));
+    if (f->params.obstacle_slip > 0.0f) {
+        vec3 slip = vec3_sub(vec3_scale(vec3_sub(f->next[k], f->position[node]), 1.0f / dt_s), surface);
+        vec3 normal = vec3_unit(vec3_sub(f->next[k], centre), (vec3){0, 0, 0});
+        slip = vec3_mad(slip, normal, -vec3_dot(slip, normal));
+        surface = vec3_mad(surface, slip, f->params.obstacle_slip);
+    }
+    f->velocity[node] = surface;
     f->touching[k] = true;
     return true;
 }
@@ -222,7 +230,7 @@ static float link_length_allowed(const awt_forest *f, uint32_t k, float length)
     return length < least ? least : length > greatest ? greatest : length;
 }
 
-uint32_t obstacle_settle(awt_forest *f, const tree *t)
+uint32_t obstacle_settle(awt_forest *f, const tree *t, float dt_s)
 {
     uint32_t unreached = 0;
     for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
@@ -233,7 +241,7 @@ uint32_t obstacle_settle(awt_forest *f, const tree *t)
         f->touching[k] = false;
         bool reached = true;
         for (uint32_t o = 0; o < f->collider_count; o++) {
-            reached = obstacle_keep_out(f, k, &f->obstacles[o], parent, length) && reached;
+            reached = obstacle_keep_out(f, k, &f->obstacles[o], parent, length, dt_s) && reached;
         }
         unreached += reached ? 0 : 1;
     }

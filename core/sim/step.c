@@ -64,7 +64,7 @@ static void step_tree(awt_forest *f, uint32_t index, float dt_s, awt_step_stats 
     if (!joint_links_are_springs(f)) {
         links_project(f, t);
     }
-    stats->unreached_contacts += obstacle_settle(f, t);
+    stats->unreached_contacts += obstacle_settle(f, t, dt_s);
     float error = step_link_error(f, t);
     stats->link_error = error > stats->link_error ? error : stats->link_error;
     stats->clamped_speeds += dynamics_finish(f, t, dt_s);

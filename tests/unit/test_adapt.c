@@ -231,7 +231,7 @@ TEST(counted_splits_and_merges_account_for_the_active_set)
     uint32_t splits = 0, merges = 0, most = 0;
     for (int n = 1; n <= 400; n++) {
         awt_step_stats stats;
-        fixture_advance(f, fixture_clip("lean"), (int64_t)n * AWT_STEP_US, zero, zero, &stats);
+        fixture_advance(f, fixture_clip("jump"), (int64_t)n * AWT_STEP_US, zero, zero, &stats);
         splits += stats.splits;
         merges += stats.merges;
         most = stats.active_nodes > most ? stats.active_nodes : most;

@@ -138,6 +138,7 @@ TEST(every_parameter_has_its_effect)
         {"repulsion_omega", 0, BOTH},
         {"contact_angle", 60.0f, BOTH},
         {"relative_motion", 0.1f, BOTH},
+        {"obstacle_slip", 0.5f, BOTH},
     };
     awt_groom *groom = groom_fixture_build_patch(60, 3, 3, 12);
     for (int springs = 0; springs < 2; springs++) {

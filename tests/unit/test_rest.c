@@ -72,9 +72,9 @@ TEST(after_a_lean_every_tree_sleeps_without_energy_and_in_style)
     check_rest_after_lean(false, 0.97);
 }
 
-TEST(after_a_lean_some_long_hair_may_lie_on_the_other_side_of_a_shoulder)
+TEST(after_a_lean_over_the_shoulders_hair_comes_to_lie_as_it_lay)
 {
-    check_rest_after_lean(true, 0.90);
+    check_rest_after_lean(true, 0.97);
 }
 
 static awt_motion turned(int64_t time_us, double yaw)
