@@ -75,7 +75,8 @@ same_bits() {
     name=$1 runner=$2
     shift 2
     make --no-print-directory -j"$jobs" B=build/bits SRC_unit="tests/main.c tests/unit/test_golden.c \
-        tests/unit/test_styles.c tests/unit/fixture.c" SRC_core="$(echo core/*/*.c)" SRC_server= WRAP= WARN="-Wall -Wextra" \
+        tests/unit/test_styles.c tests/unit/fixture.c" SRC_core="$(echo core/base/*.c core/groom/*.c core/sim/*.c)" \
+        SRC_clients="$(echo clients/motion/*.c)" SRC_proto= SRC_server= WRAP= WARN="-Wall -Wextra" \
         LDLIBS_ALL="-lm -pthread" "$@" build/bits/tests >build/make.log 2>&1 || {
         tail -n 20 build/make.log
         echo "FAIL $name: does not build"
