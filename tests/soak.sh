@@ -1,6 +1,6 @@
 #!/bin/sh
 # soak.sh: what takes longer than make test may, with the time that each part took: ten simulated minutes of every style under
-# the most violent motion there is, every test under TSan, the same bits from both compilers at every optimisation and on
+# the most violent motion there is, what has threads under TSan, the same bits from both compilers at every optimisation and on
 # another architecture, and fuzzing of all that reads bytes from outside. Its last line counts all.
 #
 # AWT_DATA: where motion files are (else ../shared/data); SECONDS_SIMULATED, FUZZ_SECONDS (of each target): for a shorter run.
@@ -75,7 +75,8 @@ same_bits() {
     name=$1 runner=$2
     shift 2
     make --no-print-directory -j"$jobs" B=build/bits SRC_unit="tests/main.c tests/unit/test_golden.c \
-        tests/unit/test_styles.c tests/unit/fixture.c" SRC_core="$(echo core/*/*.c)" SRC_server= WRAP= WARN="-Wall -Wextra" \
+        tests/unit/test_styles.c tests/unit/fixture.c" SRC_core="$(echo core/base/*.c core/groom/*.c core/sim/*.c)" \
+        SRC_clients="$(echo clients/motion/*.c)" SRC_proto= SRC_server= WRAP= WARN="-Wall -Wextra" \
         LDLIBS_ALL="-lm -pthread" "$@" build/bits/tests >build/make.log 2>&1 || {
         tail -n 20 build/make.log
         echo "FAIL $name: does not build"
@@ -142,6 +143,6 @@ build config=release CC=clang CXX=clang++ B=build/clang
 suite "every test, clang -O2" build/clang/tests
 took "every test, clang"
 build config=tsan
-suite "every test, TSan" build/tsan/tests
-took "every test, TSan"
+suite "every test with more than one thread, TSan" build/tsan/tests server client_ e2e bench_ gusts_ worker
+took "TSan"
 finish

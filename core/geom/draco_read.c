@@ -61,7 +61,7 @@ static bool take_exactly(cursor *c, const void *bytes, size_t size)
 
 static bool take_count(cursor *c, uint32_t expected)
 {
-    uint32_t count;
+    uint32_t count = 0; /* gcc at -O1 does not see that varint_take sets it */
     return varint_take(&c->at, c->end, &count) && count == expected;
 }
 
