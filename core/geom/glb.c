@@ -84,6 +84,20 @@ static bool read_binding(const glb_reader *r, uint32_t extras, glb_frame *out)
     return true;
 }
 
+/* Which strands of the hair these are. */
+static bool read_level(const glb_reader *r, uint32_t extras, glb_frame *out)
+{
+    const uint32_t level = json_member(&r->json, extras, "level");
+    bool known = false;
+    for (int k = GEOM_LEVEL_FULL; k <= GEOM_LEVEL_GUIDES && !known; k++) {
+        out->level = (geom_level)k;
+        known = json_is_text(&r->json, level, glb_level_name(out->level));
+    }
+    return known && whole_member(r, extras, "full_strands", &out->full_strands) &&
+           out->full_strands <= AWT_MAX_STRANDS && out->strands <= out->full_strands &&
+           (out->level != GEOM_LEVEL_FULL || out->strands == out->full_strands);
+}
+
 /* Strands first, for the counts of everything else follow from them. */
 static bool read_counts(const glb_reader *r, uint32_t extras, glb_frame *out)
 {
@@ -95,7 +109,8 @@ static bool read_counts(const glb_reader *r, uint32_t extras, glb_frame *out)
            whole_member(r, extras, words.points, &out->points_per_strand) && out->strands >= 1 &&
            out->strands <= AWT_MAX_STRANDS && out->points_per_strand >= 2 &&
            out->points_per_strand <= AWT_MAX_POINTS_PER_STRAND &&
-           (uint64_t)out->strands * out->points_per_strand <= AWT_MAX_POINTS;
+           (uint64_t)out->strands * out->points_per_strand <= AWT_MAX_POINTS &&
+           (out->kind == GEOM_GUIDES || read_level(r, extras, out));
 }
 
 /* False: they are missing, or no widths. */

@@ -141,7 +141,10 @@ tinygltf::Node make_node(const glb_frame &frame)
     Members extras{{"kind", tinygltf::Value(std::string(words.kind))},
                    {words.lines, whole(frame.strands)},
                    {words.points, whole(frame.points_per_strand)}};
-    if (frame.kind == GEOM_GUIDES) {
+    if (frame.kind != GEOM_GUIDES) {
+        extras["level"] = tinygltf::Value(std::string(glb_level_name(frame.level)));
+        extras["full_strands"] = whole(frame.full_strands);
+    } else {
         char binding[17];
         std::snprintf(binding, sizeof binding, "%016llx", static_cast<unsigned long long>(frame.binding));
         extras["binding"] = tinygltf::Value(std::string(binding));

@@ -35,10 +35,18 @@ static inline glb_words glb_words_of(geom_kind kind)
     return words;
 }
 
+/* What frames call a level. */
+static inline const char *glb_level_name(geom_level level)
+{
+    return level == GEOM_LEVEL_FULL ? "full" : level == GEOM_LEVEL_FIFTH ? "fifth" : "guides";
+}
+
 /* What a GLB of ours says. */
 typedef struct glb_frame {
     geom_kind kind;
+    geom_level level;                    /* of ribbons and strands */
     uint32_t strands, points_per_strand; /* of guides: wisps, and sections of each */
+    uint32_t full_strands;               /* of ribbons and strands: of the hair at level full */
     draco_attributes attributes;         /* of its meshes */
     uint64_t binding;                    /* guides: which one (binding.h) */
     glb_patch *patches;                  /* [patch_count] */

@@ -7,6 +7,7 @@
 #include "geom/draco_write.h"
 #include "geom/encode.h"
 #include "geom/glb_template.h"
+#include "geom/level.h"
 #include "geom/ribbon.h"
 
 /* Top-level wisps that a patch is of: first .. last. */
@@ -17,6 +18,7 @@ typedef struct layout_trees {
 struct geom_layout {
     geom_kind kind;
     bool stock;
+    level_strands level;                 /* of ribbons and strands: which strands those are */
     draco_attributes attributes;         /* of its meshes */
     uint32_t strands, points_per_strand; /* of guides: finest wisps, and sections of each */
     geom_binding *binding;               /* of guides; else NULL */

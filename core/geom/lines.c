@@ -77,8 +77,10 @@ awt_status lines_read(glb_frame *frame, lines_decode *other, geom_strands *out, 
     const size_t points = (size_t)frame->strands * frame->points_per_strand;
     const bool ribbon = frame->kind == GEOM_RIBBON;
     geom_strands strands = {.kind = frame->kind,
+                            .level = frame->level,
                             .strand_count = frame->strands,
                             .points_per_strand = frame->points_per_strand,
+                            .full_strand_count = frame->full_strands,
                             .positions = calloc(points, 3 * sizeof(float)),
                             .vertices = ribbon ? calloc(points, 6 * sizeof(float)) : NULL,
                             .patch_count = frame->patch_count,
