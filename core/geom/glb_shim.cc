@@ -114,14 +114,15 @@ void add_patch(tinygltf::Model *model, tinygltf::Mesh *mesh, const glb_frame &fr
     mesh->primitives.push_back(primitive);
 }
 
-tinygltf::Material make_material()
+/* Hair is no metal, and is seen from both sides; its highlight is broad. */
+tinygltf::Material make_material(const float colour[3])
 {
     tinygltf::Material material;
     material.name = "hair";
     material.doubleSided = true;
-    material.pbrMetallicRoughness.baseColorFactor = {0.13, 0.07, 0.035, 1.0}; /* brown, linear */
+    material.pbrMetallicRoughness.baseColorFactor = {colour[0], colour[1], colour[2], 1.0};
     material.pbrMetallicRoughness.metallicFactor = 0.0;
-    material.pbrMetallicRoughness.roughnessFactor = 0.55;
+    material.pbrMetallicRoughness.roughnessFactor = 0.45;
     return material;
 }
 
@@ -183,7 +184,7 @@ void fill_model(tinygltf::Model *model, const glb_frame &frame)
     model->extensionsUsed = {DRACO_EXTENSION};
     model->extensionsRequired = {DRACO_EXTENSION};
     if (frame.kind != GEOM_GUIDES) {
-        model->materials = {make_material()};
+        model->materials = {make_material(frame.colour)};
     }
 
     tinygltf::Mesh mesh;

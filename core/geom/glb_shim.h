@@ -53,8 +53,9 @@ typedef struct glb_frame {
     uint32_t patch_count;
     const unsigned char *binary; /* [binary_size], the binary chunk */
     size_t binary_size;
-    float *widths; /* [points_per_strand] from root to tip, metres; NULL: not said */
-    awt_pose head; /* orientation of length 1 */
+    float colour[3]; /* of the material, linear; written only */
+    float *widths;   /* [points_per_strand] from root to tip, metres; NULL: not said */
+    awt_pose head;   /* orientation of length 1 */
     int64_t time_us;
 } glb_frame;
 

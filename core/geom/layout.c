@@ -12,6 +12,7 @@
 #include "groom/groom.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Number, within the level, of the first strand, of guides the wisp itself, of finest wisp `g`. */
 static uint32_t first_line(const geom_layout *layout, const awt_groom *groom, uint32_t g)
@@ -73,6 +74,11 @@ static awt_status check_counts(const awt_groom_info *info, const geom_layout_def
     }
     if (def->level > (def->kind == GEOM_GUIDES ? GEOM_LEVEL_FULL : GEOM_LEVEL_GUIDES)) {
         return error_set(error, AWT_BAD_VALUE, "there is no level %d, of guides none but full", (int)def->level);
+    }
+    for (int k = 0; k < 3; k++) {
+        if (!(def->colour[k] >= 0 && def->colour[k] <= 1)) {
+            return error_set(error, AWT_BAD_VALUE, "a colour's parts are 0 to 1");
+        }
     }
     if (def->bits != 0 && (def->bits < GEOM_LEAST_BITS || def->bits > GEOM_GREATEST_BITS)) {
         return error_set(error, AWT_BAD_VALUE, "positions are quantised to %d to %d bits, not %d", GEOM_LEAST_BITS,
@@ -177,6 +183,7 @@ static awt_status make_template(geom_layout *layout, awt_error *error)
                        .points_per_strand = layout->points_per_strand,
                        .full_strands = layout->level.full_strands,
                        .attributes = layout->attributes,
+                       .colour = {layout->colour[0], layout->colour[1], layout->colour[2]},
                        .binding = layout->binding ? layout->binding->id : 0,
                        .patches = calloc(layout->patch_count, sizeof *frame.patches),
                        .patch_count = layout->patch_count,
@@ -202,6 +209,7 @@ static awt_status make_template(geom_layout *layout, awt_error *error)
 awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def, geom_layout **out, awt_error *error)
 {
     static const geom_layout_def usual = {.kind = GEOM_RIBBON};
+    static const float brown[3] = {0.13f, 0.07f, 0.035f};
     const awt_groom_info *info = &groom->info;
     def = def ? def : &usual;
     *out = NULL;
@@ -215,6 +223,8 @@ awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def
     }
     layout->kind = def->kind;
     layout->stock = def->stock;
+    const bool coloured = def->colour[0] > 0 || def->colour[1] > 0 || def->colour[2] > 0;
+    memcpy(layout->colour, coloured ? def->colour : brown, sizeof layout->colour);
     status = take_lines(layout, groom, def, error);
     if (status == AWT_OK && !make_arrays(layout, groom)) {
         status = error_set(error, AWT_NO_MEMORY, NULL);
