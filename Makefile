@@ -106,6 +106,12 @@ $(B)/receiver.wasm: $(SRC_receiver) $(HEADERS)
 	$(Q)$(EMCC) $(CFLAGS_receiver) -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH \
 	-sEXPORTED_FUNCTIONS=$(subst $() ,$(,),$(addprefix _,$(EXPORTS_receiver))) -o $@ $(SRC_receiver)
 
+# A reader of frames that shares no code with us: tinygltf with Draco, as Debian does not build it (tests/node/check_others.mjs).
+$(B)/read_tinygltf: tests/node/read_tinygltf.cc
+	@mkdir -p $(@D)
+	@echo "  CXX  $@"
+	$(Q)$(CXX) -std=c++17 -O1 $(WARN) -o $@ $< -ldraco
+
 room = $(firstword $(subst /, ,$(1)))
 $(B)/obj/%.c.o: %.c $(B)/flags
 	@mkdir -p $(@D)

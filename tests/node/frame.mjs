@@ -99,12 +99,13 @@ function decodePrimitive(draco, json, binary, primitive) {
 }
 
 /** { json, node, primitives: [{ positions, numbers, indices, box, mode, extras, accessors }] } of a frame: positions and box
- * are null where there are none, numbers and accessors go by the attribute's name (and accessors.indices). */
-export async function readFrame(bytes) {
+ * are null where there are none, numbers and accessors go by the attribute's name (and accessors.indices). `most`: primitives
+ * to read. */
+export async function readFrame(bytes, most = Infinity) {
   dracoModule ??= await draco3d.createDecoderModule({});
   const { json, binary } = splitGlb(bytes);
   const node = json.nodes[json.scenes[json.scene].nodes[0]];
-  const primitives = json.meshes[node.mesh].primitives.map((primitive) => ({
+  const primitives = json.meshes[node.mesh].primitives.slice(0, most).map((primitive) => ({
     ...decodePrimitive(dracoModule, json, binary, primitive),
     mode: primitive.mode,
     extras: primitive.extras ?? {},
