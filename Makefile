@@ -90,7 +90,7 @@ $(LIBAWT) $(LIBPROTO) $(LIBCLIENT) $(LIBSERVER):
 	$(Q)$(AR) rcs $@ $^
 
 # The receiver (core/geom/receive.h) for systems without POSIX: nothing but standard C may be in it.
-SRC_receiver := $(patsubst %,core/%.c,base/arena base/error geom/binding geom/draco_read geom/glb geom/glb_container \
+SRC_receiver := $(patsubst %,core/%.c,base/arena base/error geom/binding geom/draco_extra geom/draco_read geom/glb geom/glb_container \
 	geom/guides geom/json geom/json_number geom/lines geom/nodes_read geom/numbers geom/quantise geom/rans geom/receive geom/symbols_read geom/topology \
 	sim/evaluate) tests/node/receiver.c
 CFLAGS_receiver := -std=c17 -O2 -ffp-contract=off -fno-math-errno $(WARN) -Wmissing-prototypes -Icore

@@ -38,9 +38,10 @@ typedef struct geom_layout_def {
     geom_kind kind;
     geom_level level; /* of ribbons and strands; of guides: full */
     int bits; /* quantisation of positions, GEOM_LEAST_BITS .. GEOM_GREATEST_BITS; 0: the kind's own. Guides: 0 */
-    float colour[3]; /* the material's base colour, linear, each 0 .. 1; all 0: brown. Of guides: not looked at */
-    bool stock;      /* libdraco's encoder, the reference, instead of our own: the same positions, much slower */
-    bool bound;      /* guides: said against the binding (guides.h), a fifth of the bytes, and nothing without it */
+    uint32_t attributes; /* of vertices, beside the position: geom_attribute; own encoder, ribbons and strands only */
+    float colour[3];     /* the material's base colour, linear, each 0 .. 1; all 0: brown. Of guides: not looked at */
+    bool stock;          /* libdraco's encoder, the reference, instead of our own: the same positions, much slower */
+    bool bound;          /* guides: said against the binding (guides.h), a fifth of the bytes, and nothing without it */
 } geom_layout_def;
 
 /* Patches are whole wisp trees, in order, under GEOM_PATCH_POINTS. A tree that alone is too large is cut between

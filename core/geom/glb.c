@@ -3,6 +3,7 @@
 #include "geom/glb.h"
 
 #include "base/error.h"
+#include "geom/draco_extra.h"
 #include "geom/glb_container.h"
 #include "geom/topology.h"
 
@@ -164,6 +165,25 @@ static bool read_attributes(const glb_reader *r, uint32_t attributes, uint32_t i
     return first && (form == DRACO_POSITIONS || read_attribute(r, attributes, ids, "_TURN", 1, GLB_I16, vertices));
 }
 
+/* Which extra attributes a patch has, all of them as ours are. False: one is not. */
+static bool read_extra(const glb_reader *r, uint32_t attributes, uint32_t ids, uint32_t vertices, uint32_t *extra)
+{
+    *extra = 0;
+    for (uint32_t i = 0; i < DRACO_EXTRAS; i++) {
+        const draco_extra_form *form = draco_extra_at(i);
+        if (json_member(&r->json, ids, form->name) == JSON_NONE) {
+            continue;
+        }
+        *extra |= form->attribute;
+        if (!whole_member_is(r, ids, form->name, i + 1) ||
+            !accessor_is(r, item_of(r, &r->accessors, attributes, form->name),
+                         form->components == 2 ? "VEC2" : "SCALAR", form->quantised ? GLB_F32 : GLB_U16, vertices)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* One primitive, whose strands must begin with number `first`. */
 static bool read_patch(const glb_reader *r, uint32_t primitive, const glb_frame *frame, uint32_t first,
                        glb_patch *patch)
@@ -185,6 +205,8 @@ static bool read_patch(const glb_reader *r, uint32_t primitive, const glb_frame 
     return whole_member_is(r, primitive, "mode", GLB_TRIANGLES) && read_data_place(r, draco, patch) &&
            read_attributes(r, attributes, json_member(json, draco, "attributes"), frame->attributes.form,
                            patch->vertices) &&
+           (frame->kind == GEOM_GUIDES ||
+            read_extra(r, attributes, json_member(json, draco, "attributes"), patch->vertices, &patch->extra)) &&
            accessor_is(r, item_of(r, &r->accessors, primitive, "indices"), "SCALAR", GLB_U16, patch->triangles * 3) &&
            /* as libdraco does: no memory for triangles that the data cannot hold */
            patch->triangles <= patch->size / 3;
@@ -198,6 +220,10 @@ static bool read_patches(const glb_reader *r, uint32_t primitives, glb_frame *ou
             return false;
         }
         strand += out->patches[i].strands;
+        out->extra = out->patches[0].extra;
+        if (out->patches[i].extra != out->extra) {
+            return false;
+        }
     }
     return strand == out->strands;
 }

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "geom/buffer.h"
+#include "geom/draco_extra.h"
 
 #include <tiny_gltf.h>
 
@@ -103,6 +104,17 @@ void add_patch(tinygltf::Model *model, tinygltf::Mesh *mesh, const glb_frame &fr
         primitive.attributes["_TURN"] =
             add_accessor(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_SHORT, patch.vertices);
         attributes["_TURN"] = whole(1);
+    }
+
+    for (uint32_t i = 0; i < DRACO_EXTRAS; i++) {
+        const draco_extra_form *extra = draco_extra_at(i);
+        if (frame.extra & extra->attribute) {
+            primitive.attributes[extra->name] =
+                add_accessor(model, extra->components == 2 ? TINYGLTF_TYPE_VEC2 : TINYGLTF_TYPE_SCALAR,
+                             extra->quantised ? TINYGLTF_COMPONENT_TYPE_FLOAT : TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                             patch.vertices);
+            attributes[extra->name] = whole(i + 1);
+        }
     }
 
     Members draco;

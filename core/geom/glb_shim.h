@@ -15,6 +15,7 @@ typedef struct glb_patch {
     uint32_t first_strand, strands;
     uint32_t vertices, triangles;
     float min[3], max[3]; /* of the positions as a decoder gives them back */
+    uint32_t extra;       /* as the frame's */
     size_t offset, size;  /* its Draco data in the binary chunk */
 } glb_patch;
 
@@ -53,6 +54,7 @@ typedef struct glb_frame {
     uint32_t patch_count;
     const unsigned char *binary; /* [binary_size], the binary chunk */
     size_t binary_size;
+    uint32_t extra;  /* attributes (geom_attribute) of its vertices */
     float colour[3]; /* of the material, linear; written only */
     float *widths;   /* [points_per_strand] from root to tip, metres; NULL: not said */
     awt_pose head;   /* orientation of length 1 */

@@ -7,6 +7,7 @@
 
 #include "base/assert.h"
 #include "base/error.h"
+#include "geom/extras.h"
 #include "geom/measure.h"
 #include "geom/topology.h"
 #include "groom/groom.h"
@@ -74,6 +75,10 @@ static awt_status check_counts(const awt_groom_info *info, const geom_layout_def
     }
     if (def->level > (def->kind == GEOM_GUIDES ? GEOM_LEVEL_FULL : GEOM_LEVEL_GUIDES)) {
         return error_set(error, AWT_BAD_VALUE, "there is no level %d, of guides none but full", (int)def->level);
+    }
+    if (def->attributes != 0 && (def->stock || def->kind == GEOM_GUIDES || def->attributes > GEOM_ATTRIBUTES_ALL)) {
+        return error_set(error, AWT_BAD_VALUE,
+                         "attributes are there for ribbons and strands by the own encoder, not %u", def->attributes);
     }
     for (int k = 0; k < 3; k++) {
         if (!(def->colour[k] >= 0 && def->colour[k] <= 1)) {
@@ -183,6 +188,7 @@ static awt_status make_template(geom_layout *layout, awt_error *error)
                        .points_per_strand = layout->points_per_strand,
                        .full_strands = layout->level.full_strands,
                        .attributes = layout->attributes,
+                       .extra = layout->extra,
                        .colour = {layout->colour[0], layout->colour[1], layout->colour[2]},
                        .binding = layout->binding ? layout->binding->id : 0,
                        .patches = calloc(layout->patch_count, sizeof *frame.patches),
@@ -223,6 +229,7 @@ awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def
     }
     layout->kind = def->kind;
     layout->stock = def->stock;
+    layout->extra = def->attributes;
     const bool coloured = def->colour[0] > 0 || def->colour[1] > 0 || def->colour[2] > 0;
     memcpy(layout->colour, coloured ? def->colour : brown, sizeof layout->colour);
     status = take_lines(layout, groom, def, error);
@@ -230,6 +237,7 @@ awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def
         status = error_set(error, AWT_NO_MEMORY, NULL);
     }
     status = status == AWT_OK ? make_meshes(layout, error) : status;
+    status = status == AWT_OK && layout->extra ? extras_add(layout, groom, layout->extra, error) : status;
     status = status == AWT_OK ? make_template(layout, error) : status;
     if (status != AWT_OK) {
         geom_layout_destroy(layout);

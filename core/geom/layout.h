@@ -23,6 +23,7 @@ struct geom_layout {
     uint32_t strands, points_per_strand; /* of guides: finest wisps, and sections of each */
     geom_binding *binding;               /* of guides; else NULL */
     ribbon_shape shape;
+    uint32_t extra; /* attributes (geom_attribute) of its vertices */
     float colour[3];
     float *half_width;      /* [points_per_strand]; the shape's; of guides NULL */
     draco_box box;          /* one for all patches and all frames */

@@ -230,8 +230,8 @@ static awt_status time_decode(subject *s, bool stock, double *ms, awt_error *err
         if (stock) {
             status = draco_shim_decode(glb.binary + patch->offset, patch->size, s->layout->indices, patch->vertices,
                                        patch->triangles, out, error);
-        } else if (!draco_read(s->reader, glb.binary + patch->offset, patch->size, s->layout->indices, patch->vertices,
-                               patch->triangles, out)) {
+        } else if (!draco_read(s->reader, 0, glb.binary + patch->offset, patch->size, s->layout->indices,
+                               patch->vertices, patch->triangles, out)) {
             status = error_set(error, AWT_BAD_FORMAT, "our reader refuses what our encoder wrote");
         }
     }

@@ -2,7 +2,8 @@
 // gltf-transform, and tinygltf with Draco, where read_tinygltf has left FILE.glb.tinygltf.
 //
 // All must give the same positions to the bit, as many indices, the same pose; where FILE.glb.f32 stands beside the file (the
-// vertices before quantisation), each within half a quantisation step of it. One line a file; exit 1 on any fault.
+// vertices before quantisation), each within half a quantisation step of it; where FILE.glb.extra.f32 does, the attributes
+// _STRAND, TEXCOORD_0 and _WIDTH of every vertex, within half a step of 14 bits. One line a file; exit 1 on any fault.
 import { existsSync, readFileSync } from 'node:fs';
 import { NodeIO } from '@gltf-transform/core';
 import { KHRDracoMeshCompression } from '@gltf-transform/extensions';
@@ -41,6 +42,29 @@ function valuesOf(attribute) {
     : attribute.array;
 }
 
+const EXTRA = ['_STRAND', 'TEXCOORD_0', '_WIDTH'];
+
+/** Strand, u, v and width of every vertex, from each primitive's [strand, uv, width]; null where a primitive lacks any. */
+function extraOf(primitives) {
+  return primitives.some((arrays) => arrays.some((array) => !array)) ? null
+    : joined(primitives.map(([strand, uv, width]) => Float32Array.from({ length: 4 * strand.length }, (_, i) =>
+      [strand[i >> 2], uv[2 * (i >> 2)], uv[2 * (i >> 2) + 1], width[i >> 2]][i % 4])));
+}
+
+/** Whether the attributes are those that went in, in steps of what each is quantised to. */
+function checkExtra(file, found, faults) {
+  const expected = floatsOf(`${file}.extra.f32`);
+  const widest = expected.reduce((most, value, i) => (i % 4 === 3 ? Math.max(most, value) : most), 0);
+  const step = [1, 1 / 16383, 1 / 16383, widest / 16383];
+  for (const name of ['three', 'gltf-transform']) {
+    const { extra } = found[name];
+    const off = extra?.findIndex((value, i) => !(Math.abs(value - expected[i]) <= (i % 4 ? 0.51 * step[i % 4] : 0)));
+    if (extra?.length !== expected.length || off !== -1) {
+      faults.push(`${name}: attribute ${off} is ${extra?.[off]}, not ${expected[off]}`);
+    }
+  }
+}
+
 async function withThree(three, bytes) {
   const { scene, geometries } = await three.read(bytes);
   const hair = scene.getObjectByName('hair');
@@ -48,6 +72,7 @@ async function withThree(three, bytes) {
     positions: joined(geometries.map((geometry) => valuesOf(geometry.getAttribute('position')))),
     indices: geometries.reduce((sum, geometry) => sum + geometry.getIndex().count, 0),
     pose: [...hair.position.toArray(), ...hair.quaternion.toArray()],
+    extra: extraOf(geometries.map(({ attributes }) => [attributes._strand, attributes.uv, attributes._width].map((one) => one?.array))),
   };
 }
 
@@ -59,6 +84,7 @@ async function withTransform(io, bytes) {
     positions: joined(primitives.map((primitive) => primitive.getAttribute('POSITION').getArray())),
     indices: primitives.reduce((sum, primitive) => sum + primitive.getIndices().getCount(), 0),
     pose: [...node.getTranslation(), ...node.getRotation()],
+    extra: extraOf(primitives.map((primitive) => EXTRA.map((name) => primitive.getAttribute(name)?.getArray()))),
   };
 }
 
@@ -78,6 +104,9 @@ async function checkFile(file, { three, io }) {
     if (one.indices !== indices || greatestDifference(one.pose, pose) > 1e-12) {
       faults.push(`${name}: ${one.indices} indices, pose ${one.pose}`);
     }
+  }
+  if (existsSync(`${file}.extra.f32`)) {
+    checkExtra(file, found, faults);
   }
   let worst = null;
   if (existsSync(`${file}.f32`)) {

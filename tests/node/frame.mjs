@@ -84,7 +84,7 @@ function decodePrimitive(draco, json, binary, primitive) {
   const extension = primitive.extensions.KHR_draco_mesh_compression;
   const view = json.bufferViews[extension.bufferView];
   const data = new Int8Array(binary.buffer, binary.byteOffset + (view.byteOffset ?? 0), view.byteLength);
-  const { POSITION: position, ...others } = extension.attributes;
+  const { POSITION: position, _STRAND, TEXCOORD_0, _WIDTH, ...others } = extension.attributes; // three are check_others.mjs'
   const attribute = (decoder, mesh, id) => decoder.GetAttributeByUniqueId(mesh, id);
   const decoded = withMesh(draco, data, () => {}, (decoder, mesh) => ({
     positions: position === undefined ? null : readPositions(draco, decoder, mesh, attribute(decoder, mesh, position)),

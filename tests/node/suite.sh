@@ -7,7 +7,7 @@ build=$1
 passed=0 failed=0 skipped=0
 if [ ! -d tests/node/node_modules/gltf-validator ] || ! command -v node >/dev/null 2>&1; then
     echo "skip: node or its packages are not here"
-    echo "0 passed, 0 failed, 13 skipped"
+    echo "0 passed, 0 failed, 15 skipped"
     exit 0
 fi
 work=$(mktemp -d)
@@ -79,6 +79,10 @@ cross "receiver as WebAssembly" emcc as_webassembly
 mkdir "$work/frames"
 judge frames env AWT_FRAMES="$work/frames" "$build/tests" geom_frames_for_other_readers
 others frames
+
+mkdir "$work/attributes"
+judge attributes env AWT_FRAMES="$work/attributes" "$build/tests" geom_attributes_for_other_readers
+others attributes
 
 "$build/awtd" --listen 127.0.0.1:0 --state-dir "$work/state" >"$work/out" 2>"$work/log" &
 daemon=$!
