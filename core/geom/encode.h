@@ -65,9 +65,10 @@ uint32_t geom_layout_strands(const geom_layout *layout);
 /* Which strand of the groom number `index` of a level is: the same ones in every frame, rising. */
 uint32_t geom_layout_strand(const geom_layout *layout, uint32_t index);
 /* The strands of a layout of ribbons or strands alone, points [geom_layout_strands][points_per_strand][3]: those that
- * awt_groom_strands gives, to the bit, for a share of its work. `groom` is the layout's; the others as there. */
-void geom_layout_evaluate(const geom_layout *layout, const awt_groom *groom, const float *centres, const float *frames,
-                          float *scratch, float *points);
+ * awt_groom_strands_of gives, to the bit, for a share of its work. `groom` is the layout's; the others as there,
+ * `wisps` NULL: all. */
+void geom_layout_evaluate(const geom_layout *layout, const awt_groom *groom, const bool *wisps, const float *centres,
+                          const float *frames, float *scratch, float *points);
 
 /* One encoder's working memory; one thread at a time. */
 typedef struct geom_scratch geom_scratch;

@@ -37,7 +37,8 @@ static bool take_roots(const geom_layout *layout, const awt_groom *groom, extras
     m->roots = malloc(2 * (size_t)layout->strands * sizeof *m->roots);
     const bool taken = points && scratch && m->roots;
     if (taken) {
-        level_evaluate(&layout->level, groom, &groom->rest_position[first].x, &groom->rest_frame[0].x, scratch, points);
+        level_evaluate(&layout->level, groom, NULL, &groom->rest_position[first].x, &groom->rest_frame[0].x, scratch,
+                       points);
     }
     for (uint32_t s = 0; taken && s < layout->strands; s++) {
         extras_root_uv(points + s * a_strand, m->roots + 2 * (size_t)s);

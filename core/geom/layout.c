@@ -295,8 +295,8 @@ uint32_t geom_layout_strand(const geom_layout *layout, uint32_t index)
     return layout->level.number ? layout->level.number[index] : index;
 }
 
-void geom_layout_evaluate(const geom_layout *layout, const awt_groom *groom, const float *centres, const float *frames,
-                          float *scratch, float *points)
+void geom_layout_evaluate(const geom_layout *layout, const awt_groom *groom, const bool *wisps, const float *centres,
+                          const float *frames, float *scratch, float *points)
 {
-    level_evaluate(&layout->level, groom, centres, frames, scratch, points);
+    level_evaluate(&layout->level, groom, wisps, centres, frames, scratch, points);
 }

@@ -111,18 +111,20 @@ uint32_t level_first_strand(const level_strands *level, const awt_groom *groom, 
     return (level->strand_first ? level->strand_first : groom->gc_strand_first)[wisp];
 }
 
-void level_evaluate(const level_strands *level, const awt_groom *groom, const float *centres, const float *frames,
-                    float *scratch, float *points)
+void level_evaluate(const level_strands *level, const awt_groom *groom, const bool *wisps, const float *centres,
+                    const float *frames, float *scratch, float *points)
 {
     if (level->level == GEOM_LEVEL_FULL) {
-        awt_groom_strands(groom, centres, frames, scratch, points);
+        awt_groom_strands_of(groom, wisps, centres, frames, scratch, points);
         return;
     }
     const evaluate_binding binding = {.wisps = finest_wisps(groom),
                                       .sections = groom->info.sections,
                                       .points = groom->info.points_per_strand,
                                       .strand_first = level->strand_first,
-                                      .offsets = level->offsets};
+                                      .offsets = level->offsets,
+                                      .tree = groom->gc_tree + groom_finest_first(groom),
+                                      .trees = wisps};
     evaluate_hair(&binding, centres, frames, scratch, points);
 }
 

@@ -26,9 +26,10 @@ void level_strands_fini(level_strands *level);
 /* The first strand of finest wisp `wisp`, numbered within the level; of the wisp after the last: how many there are. */
 uint32_t level_first_strand(const level_strands *level, const awt_groom *groom, uint32_t wisp);
 
-/* Evaluates them, points [strands][points_per_strand][3], to the bit as awt_groom_strands does; arguments as there. */
-void level_evaluate(const level_strands *level, const awt_groom *groom, const float *centres, const float *frames,
-                    float *scratch, float *points);
+/* Evaluates them, points [strands][points_per_strand][3], to the bit as awt_groom_strands_of does; arguments as there.
+ */
+void level_evaluate(const level_strands *level, const awt_groom *groom, const bool *wisps, const float *centres,
+                    const float *frames, float *scratch, float *points);
 
 /* How much wider its strands are than those of the full hair: each stands for full_strands / strands of them, and has
  * the cross-section of all these together. So the volume of the hair is the same at every level. */

@@ -277,7 +277,7 @@ static double greatest_error(const subject *s)
 static awt_status measure_frame(const hair *h, subject *s, int64_t time_us, awt_error *error)
 {
     double begin = bench_now_ms();
-    geom_layout_evaluate(s->layout, h->groom, h->centres, h->frames, h->scratch, s->points);
+    geom_layout_evaluate(s->layout, h->groom, NULL, h->centres, h->frames, h->scratch, s->points);
     s->evaluate_ms[s->done] = bench_now_ms() - begin;
     geom_frame_def def = {.points = s->points, .head = awt_forest_head(h->forest), .time_us = time_us};
     awt_status status = time_own(s, &def, error);

@@ -34,8 +34,8 @@ static void rest_hair_init(rest_hair *h, const geom_layout_def *def)
     CHECK_INT(geom_scratch_create(h->layout, &h->scratch, NULL), AWT_OK);
     h->points = calloc((size_t)geom_layout_strands(h->layout) * h->layout->points_per_strand, 3 * sizeof(float));
     CHECK(scratch && h->points);
-    geom_layout_evaluate(h->layout, h->groom, &h->groom->rest_position[first].x, &h->groom->rest_frame[0].x, scratch,
-                         h->points);
+    geom_layout_evaluate(h->layout, h->groom, NULL, &h->groom->rest_position[first].x, &h->groom->rest_frame[0].x,
+                         scratch, h->points);
     const geom_frame_def frame = {.points = h->points, .head = geom_fixture_head};
     CHECK_INT(geom_encode(h->layout, h->scratch, &frame, &h->frame, NULL, &error), AWT_OK);
     CHECK_TEXT(error.text, "");

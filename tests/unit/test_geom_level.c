@@ -93,7 +93,7 @@ static void check_level(guides_fixture *f, geom_level level, const geom_layout *
     level_fixture l;
     level_fixture_init(&l, f->groom, &(geom_layout_def){.kind = GEOM_STRANDS, .level = level});
     check_numbers(f->groom, l.layout, guides);
-    geom_layout_evaluate(l.layout, f->groom, f->centres, f->frames, f->scratch, l.points);
+    geom_layout_evaluate(l.layout, f->groom, NULL, f->centres, f->frames, f->scratch, l.points);
     CHECK_INT(strands_that_differ(l.layout, l.points, f->points), 0);
     geom_strands back = encode_and_read(&l);
     CHECK_INT(back.level, level);
@@ -215,6 +215,40 @@ TEST(geom_patches_of_levels_are_whole_trees)
     geom_fixture_fini(&f);
 }
 
+/* Strands of every third top-level wisp alone; the points of all others stay the zeros that they were. */
+TEST(geom_levels_bring_up_to_date_what_moved)
+{
+    guides_fixture f;
+    guides_fixture_init(&f, fixture_groom("long", 2000), "long");
+    const uint32_t trees = f.info.wisp_count[0];
+    bool *moved = calloc(trees, sizeof *moved);
+    for (uint32_t t = 0; t < trees; t += 3) {
+        moved[t] = true;
+    }
+    for (int level = 0; level < LEVELS; level++) {
+        level_fixture l;
+        level_fixture_init(&l, f.groom, &(geom_layout_def){.kind = GEOM_STRANDS, .level = (geom_level)level});
+        const size_t a_strand = 3 * (size_t)l.layout->points_per_strand;
+        uint32_t wrong = 0, named = 0, g = 0;
+        geom_layout_evaluate(l.layout, f.groom, moved, f.centres, f.frames, f.scratch, l.points);
+        for (uint32_t s = 0; s < geom_layout_strands(l.layout); s++) {
+            const uint32_t number = geom_layout_strand(l.layout, s);
+            while (f.groom->gc_strand_first[g + 1] <= number) {
+                g++;
+            }
+            const bool there = l.points[s * a_strand] != 0; /* all were zero */
+            const bool wanted = moved[f.groom->gc_tree[groom_finest_first(f.groom) + g]];
+            named += wanted;
+            wrong += there != wanted;
+        }
+        CHECK_INT(wrong, 0);
+        CHECK(named > 0 && named < geom_layout_strands(l.layout));
+        level_fixture_fini(&l);
+    }
+    free(moved);
+    guides_fixture_fini(&f);
+}
+
 static awt_status read_delta(geom_delta_reader *reader, const geom_buffer *delta, const geom_strands *base,
                              geom_strands *out)
 {
@@ -235,11 +269,11 @@ static void check_deltas(guides_fixture *f, geom_level level)
     CHECK_INT(geom_quantised_create(l.layout, &now, NULL), AWT_OK);
     CHECK_INT(geom_delta_reader_create(&reader, NULL), AWT_OK);
     const geom_quantise_def quantise = {.points = l.points};
-    geom_layout_evaluate(l.layout, f->groom, f->centres, f->frames, f->scratch, l.points);
+    geom_layout_evaluate(l.layout, f->groom, NULL, f->centres, f->frames, f->scratch, l.points);
     CHECK_INT(geom_quantise(l.layout, &quantise, base, &clamped, NULL), AWT_OK);
     geom_strands before = encode_and_read(&l);
     guides_fixture_move(f, "lean", awt_forest_time(f->forest) + 50000);
-    geom_layout_evaluate(l.layout, f->groom, f->centres, f->frames, f->scratch, l.points);
+    geom_layout_evaluate(l.layout, f->groom, NULL, f->centres, f->frames, f->scratch, l.points);
     CHECK_INT(geom_quantise(l.layout, &quantise, now, &clamped, NULL), AWT_OK);
     geom_strands whole = encode_and_read(&l);
     const geom_delta_def def = {.base = base, .now = now, .base_sequence = 1, .sequence = 2, .head = geom_fixture_head};
