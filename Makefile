@@ -90,7 +90,7 @@ $(LIBAWT) $(LIBPROTO) $(LIBCLIENT) $(LIBSERVER):
 	$(Q)$(AR) rcs $@ $^
 
 # The receiver (core/geom/receive.h) for systems without POSIX: nothing but standard C may be in it.
-SRC_receiver := $(patsubst %,core/%.c,base/arena base/error geom/binding geom/draco_read geom/glb geom/glb_container \
+SRC_receiver := $(patsubst %,core/%.c,base/arena base/error geom/binding geom/draco_extra geom/draco_read geom/glb geom/glb_container \
 	geom/guides geom/json geom/json_number geom/lines geom/nodes_read geom/numbers geom/quantise geom/rans geom/receive geom/symbols_read geom/topology \
 	sim/evaluate) tests/node/receiver.c
 CFLAGS_receiver := -std=c17 -O2 -ffp-contract=off -fno-math-errno $(WARN) -Wmissing-prototypes -Icore
@@ -105,6 +105,12 @@ $(B)/receiver.wasm: $(SRC_receiver) $(HEADERS)
 	@echo "  EMCC $@"
 	$(Q)$(EMCC) $(CFLAGS_receiver) -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH \
 	-sEXPORTED_FUNCTIONS=$(subst $() ,$(,),$(addprefix _,$(EXPORTS_receiver))) -o $@ $(SRC_receiver)
+
+# A reader of frames that shares no code with us: tinygltf with Draco, as Debian does not build it (tests/node/check_others.mjs).
+$(B)/read_tinygltf: tests/node/read_tinygltf.cc
+	@mkdir -p $(@D)
+	@echo "  CXX  $@"
+	$(Q)$(CXX) -std=c++17 -O1 $(WARN) -o $@ $< -ldraco
 
 room = $(firstword $(subst /, ,$(1)))
 $(B)/obj/%.c.o: %.c $(B)/flags

@@ -26,6 +26,7 @@ else
 fi
 if [ "$1" != run ]; then
     want clang has clang
+    want nlohmann-json3-dev has_header nlohmann/json.hpp
     want libclang-rt-dev has_clang_runtime
     want nodejs has node
     want npm has npm

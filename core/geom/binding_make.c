@@ -70,7 +70,7 @@ static void fill(const awt_groom *groom, geom_binding *b)
 {
     const uint32_t first = groom_finest_first(groom);
     const size_t nodes = (size_t)b->wisps * b->sections;
-    measure_half_widths(&groom->info, 0, b->widths);
+    measure_half_widths(&groom->info, 1, 0, b->widths);
     for (uint32_t i = 0; i < b->points; i++) {
         b->widths[i] *= 2;
     }

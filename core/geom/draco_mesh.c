@@ -86,5 +86,6 @@ awt_status draco_mesh_make(uint32_t vertices, const uint16_t *indices, uint32_t 
 void draco_mesh_fini(draco_mesh *mesh)
 {
     free(mesh->head);
+    free(mesh->tail);
     *mesh = (draco_mesh){0};
 }

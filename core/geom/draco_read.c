@@ -2,6 +2,7 @@
 #include "geom/draco_read.h"
 
 #include "base/error.h"
+#include "geom/draco_extra.h"
 #include "geom/numbers.h"
 #include "geom/quantise.h"
 #include "geom/symbols.h"
@@ -175,18 +176,27 @@ static bool take_mesh(draco_reader *reader, cursor *c, const uint16_t *indices, 
     return take_indices(reader, c, indices, triangles);
 }
 
-bool draco_read(draco_reader *reader, const void *bytes, size_t size, const uint16_t *indices, uint32_t vertices,
-                uint32_t triangles, float *positions)
+/* What describes positions and extra attributes. */
+static bool take_description(cursor *c, uint32_t extra)
+{
+    unsigned char expected[sizeof DRACO_POSITION + DRACO_EXTRAS * DRACO_EXTRA_DESCRIPTION_BYTES];
+    memcpy(expected, DRACO_POSITION, sizeof DRACO_POSITION);
+    expected[0] = (unsigned char)(expected[0] + draco_extra_count(extra));
+    const unsigned char *end = draco_extra_describe(extra, expected + sizeof DRACO_POSITION);
+    return take_exactly(c, expected, (size_t)(end - expected));
+}
+
+bool draco_read(draco_reader *reader, uint32_t extra, const void *bytes, size_t size, const uint16_t *indices,
+                uint32_t vertices, uint32_t triangles, float *positions)
 {
     cursor c = {.at = bytes, .end = (const unsigned char *)bytes + size};
     const unsigned char *after_counts;
     draco_box box;
     int32_t least, greatest;
-    return take_mesh(reader, &c, indices, vertices, triangles, &after_counts) &&
-           take_exactly(&c, DRACO_POSITION, sizeof DRACO_POSITION) &&
+    return take_mesh(reader, &c, indices, vertices, triangles, &after_counts) && take_description(&c, extra) &&
            take_exactly(&c, DRACO_DIFFERENCES, sizeof DRACO_DIFFERENCES) &&
            take_symbols(reader, &c, reader->symbols, vertices) && take_bounds(&c, &least, &greatest) && least == 0 &&
-           take_box(&c, greatest, &box) && take_zeros(&c, after_counts, triangles) &&
+           take_box(&c, greatest, &box) && (extra != 0 || take_zeros(&c, after_counts, triangles)) &&
            fill_positions(&box, reader->symbols, vertices, positions);
 }
 

@@ -14,10 +14,12 @@ typedef struct draco_reader draco_reader;
 awt_status draco_reader_create(uint32_t most_vertices, uint32_t most_triangles, draco_reader **out, awt_error *error);
 void draco_reader_destroy(draco_reader *reader);
 
-/* Reads the mesh of exactly these `vertices` and `triangles` with exactly these `indices` [triangles][3]; `positions`
+/* Of extra attributes (draco_extra.h) it is checked that they are these; their data are not read, and may be anything.
+ *
+ * Reads the mesh of exactly these `vertices` and `triangles` with exactly these `indices` [triangles][3]; `positions`
  * [vertices][3] is filled with finite numbers. False: these bytes are not that, and `positions` may be half written. */
-bool draco_read(draco_reader *reader, const void *bytes, size_t size, const uint16_t *indices, uint32_t vertices,
-                uint32_t triangles, float *positions);
+bool draco_read(draco_reader *reader, uint32_t extra, const void *bytes, size_t size, const uint16_t *indices,
+                uint32_t vertices, uint32_t triangles, float *positions);
 
 /* The same of a mesh with numbers. Of `positions` and `offsets` [vertices][3] that which the form has is filled, the
  * other is not touched; `turns` [vertices][3] hold numbers of `attributes`. */

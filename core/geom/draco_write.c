@@ -100,7 +100,7 @@ size_t draco_writer_bytes(const draco_writer *writer)
 
 static size_t size_of(const draco_mesh *mesh, size_t symbols_size)
 {
-    size_t size = mesh->head_size + symbols_size;
+    size_t size = mesh->head_size + symbols_size + mesh->tail_size;
     switch (mesh->attributes.form) {
     case DRACO_POSITIONS:
         size += DRACO_BOUNDS_BYTES + DRACO_BOX_BYTES;
@@ -227,5 +227,6 @@ void draco_writer_put(const draco_writer *writer, const draco_box *box, const dr
         at[16] = (unsigned char)box->bits;
         at += DRACO_BOX_BYTES;
     }
+    at = job->mesh->tail ? store_bytes(at, job->mesh->tail, job->mesh->tail_size) : at;
     memset(at, 0, job->size - (size_t)(at - out));
 }

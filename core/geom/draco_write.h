@@ -26,6 +26,8 @@ typedef struct draco_mesh {
     draco_attributes attributes;
     unsigned char *head; /* [head_size]: everything before the first symbols of vertices; heap */
     size_t head_size;
+    unsigned char *tail; /* [tail_size]: what follows the positions (draco_extra.h); heap; NULL: nothing */
+    size_t tail_size;
     size_t least_size; /* decoders refuse a smaller one; zeros fill it up */
 } draco_mesh;
 

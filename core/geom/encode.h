@@ -36,9 +36,12 @@ typedef struct geom_layout geom_layout;
 
 typedef struct geom_layout_def {
     geom_kind kind;
-    int bits;   /* quantisation of positions, GEOM_LEAST_BITS .. GEOM_GREATEST_BITS; 0: the kind's own. Guides: 0 */
-    bool stock; /* libdraco's encoder, the reference, instead of our own: the same positions, much slower */
-    bool bound; /* guides: said against the binding (guides.h), a fifth of the bytes, and nothing without it */
+    geom_level level; /* of ribbons and strands; of guides: full */
+    int bits; /* quantisation of positions, GEOM_LEAST_BITS .. GEOM_GREATEST_BITS; 0: the kind's own. Guides: 0 */
+    uint32_t attributes; /* of vertices, beside the position: geom_attribute; own encoder, ribbons and strands only */
+    float colour[3];     /* the material's base colour, linear, each 0 .. 1; all 0: brown. Of guides: not looked at */
+    bool stock;          /* libdraco's encoder, the reference, instead of our own: the same positions, much slower */
+    bool bound;          /* guides: said against the binding (guides.h), a fifth of the bytes, and nothing without it */
 } geom_layout_def;
 
 /* Patches are whole wisp trees, in order, under GEOM_PATCH_POINTS. A tree that alone is too large is cut between
@@ -57,6 +60,16 @@ geom_patch geom_layout_patch(const geom_layout *layout, uint32_t index);
  * geom_quantise_def take it. */
 void geom_layout_unchanged(const geom_layout *layout, const bool *moved, bool *unchanged);
 
+/* Strands of the layout's level, of guides finest wisps: what a frame's points are of, and patches count. */
+uint32_t geom_layout_strands(const geom_layout *layout);
+/* Which strand of the groom number `index` of a level is: the same ones in every frame, rising. */
+uint32_t geom_layout_strand(const geom_layout *layout, uint32_t index);
+/* The strands of a layout of ribbons or strands alone, points [geom_layout_strands][points_per_strand][3]: those that
+ * awt_groom_strands_of gives, to the bit, for a share of its work. `groom` is the layout's; the others as there,
+ * `wisps` NULL: all. */
+void geom_layout_evaluate(const geom_layout *layout, const awt_groom *groom, const bool *wisps, const float *centres,
+                          const float *frames, float *scratch, float *points);
+
 /* One encoder's working memory; one thread at a time. */
 typedef struct geom_scratch geom_scratch;
 awt_status geom_scratch_create(const geom_layout *layout, geom_scratch **out, awt_error *error);
@@ -69,7 +82,7 @@ typedef struct geom_quantised geom_quantised;
 
 /* What a frame is made of. */
 typedef struct geom_frame_def {
-    const float *points; /* strand points [strands][points_per_strand][3], head frame; of guides section centres */
+    const float *points; /* [geom_layout_strands][points_per_strand][3], head frame; of guides section centres */
     const float *frames; /* of guides section frames [finest_nodes][4], both as awt_forest_guides gives them */
     const geom_quantised *quantised; /* kind strands, own encoder: these, instead of points; else NULL */
     awt_pose head;                   /* becomes the glTF node's translation and rotation */
@@ -94,10 +107,11 @@ typedef struct geom_frame_stats {
  * with `bytes` NULL nothing else happens. AWT_LIMIT where `capacity` is less; AWT_NO_MEMORY. */
 awt_status geom_binding_write(const awt_groom *groom, void *bytes, size_t capacity, size_t *size, awt_error *error);
 
-/* Writes a frame. The scene's node is named "hair" and carries extras {"kind", "strands", "points_per_strand",
- * "widths"} (widths: of a strand from root to tip, metres), every patch is a primitive with extras {"first_strand",
- * "strands"}; of guides proto/GEOMETRY.md says what they are. `out` is replaced. AWT_BAD_VALUE (a point or the pose is
- * not finite; `previous` is no frame of this layout), AWT_NO_MEMORY, AWT_LIMIT. */
+/* Writes a frame. The scene's node is named "hair" and carries extras {"kind", "level",
+ * "strands", "full_strands", "points_per_strand", "widths"} (full_strands: of the whole hair; widths: of a strand from
+ * root to tip, metres), every patch is a primitive with extras {"first_strand", "strands"}; of guides proto/GEOMETRY.md
+ * says what they are. `out` is replaced. AWT_BAD_VALUE (a point or the pose is not finite; `previous` is no frame of
+ * this layout), AWT_NO_MEMORY, AWT_LIMIT. */
 awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const geom_frame_def *def, geom_buffer *out,
                        geom_frame_stats *stats, awt_error *error);
 
@@ -112,7 +126,7 @@ size_t geom_quantised_bytes(const geom_quantised *quantised);
 uint32_t geom_quantised_checksum(const geom_quantised *quantised);
 
 typedef struct geom_quantise_def {
-    const float *points; /* [strands][points_per_strand][3], head frame */
+    const float *points; /* [geom_layout_strands][points_per_strand][3], head frame */
 
     /* Patches whose points are to the bit those that `previous` was made of. NULL: none. */
     const bool *unchanged; /* [geom_layout_patches] */

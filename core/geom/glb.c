@@ -3,6 +3,7 @@
 #include "geom/glb.h"
 
 #include "base/error.h"
+#include "geom/draco_extra.h"
 #include "geom/glb_container.h"
 #include "geom/topology.h"
 
@@ -84,6 +85,20 @@ static bool read_binding(const glb_reader *r, uint32_t extras, glb_frame *out)
     return true;
 }
 
+/* Which strands of the hair these are. */
+static bool read_level(const glb_reader *r, uint32_t extras, glb_frame *out)
+{
+    const uint32_t level = json_member(&r->json, extras, "level");
+    bool known = false;
+    for (int k = GEOM_LEVEL_FULL; k <= GEOM_LEVEL_GUIDES && !known; k++) {
+        out->level = (geom_level)k;
+        known = json_is_text(&r->json, level, glb_level_name(out->level));
+    }
+    return known && whole_member(r, extras, "full_strands", &out->full_strands) &&
+           out->full_strands <= AWT_MAX_STRANDS && out->strands <= out->full_strands &&
+           (out->level != GEOM_LEVEL_FULL || out->strands == out->full_strands);
+}
+
 /* Strands first, for the counts of everything else follow from them. */
 static bool read_counts(const glb_reader *r, uint32_t extras, glb_frame *out)
 {
@@ -95,7 +110,8 @@ static bool read_counts(const glb_reader *r, uint32_t extras, glb_frame *out)
            whole_member(r, extras, words.points, &out->points_per_strand) && out->strands >= 1 &&
            out->strands <= AWT_MAX_STRANDS && out->points_per_strand >= 2 &&
            out->points_per_strand <= AWT_MAX_POINTS_PER_STRAND &&
-           (uint64_t)out->strands * out->points_per_strand <= AWT_MAX_POINTS;
+           (uint64_t)out->strands * out->points_per_strand <= AWT_MAX_POINTS &&
+           (out->kind == GEOM_GUIDES || read_level(r, extras, out));
 }
 
 /* False: they are missing, or no widths. */
@@ -149,6 +165,25 @@ static bool read_attributes(const glb_reader *r, uint32_t attributes, uint32_t i
     return first && (form == DRACO_POSITIONS || read_attribute(r, attributes, ids, "_TURN", 1, GLB_I16, vertices));
 }
 
+/* Which extra attributes a patch has, all of them as ours are. False: one is not. */
+static bool read_extra(const glb_reader *r, uint32_t attributes, uint32_t ids, uint32_t vertices, uint32_t *extra)
+{
+    *extra = 0;
+    for (uint32_t i = 0; i < DRACO_EXTRAS; i++) {
+        const draco_extra_form *form = draco_extra_at(i);
+        if (json_member(&r->json, ids, form->name) == JSON_NONE) {
+            continue;
+        }
+        *extra |= form->attribute;
+        if (!whole_member_is(r, ids, form->name, i + 1) ||
+            !accessor_is(r, item_of(r, &r->accessors, attributes, form->name),
+                         form->components == 2 ? "VEC2" : "SCALAR", form->quantised ? GLB_F32 : GLB_U16, vertices)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* One primitive, whose strands must begin with number `first`. */
 static bool read_patch(const glb_reader *r, uint32_t primitive, const glb_frame *frame, uint32_t first,
                        glb_patch *patch)
@@ -170,6 +205,8 @@ static bool read_patch(const glb_reader *r, uint32_t primitive, const glb_frame 
     return whole_member_is(r, primitive, "mode", GLB_TRIANGLES) && read_data_place(r, draco, patch) &&
            read_attributes(r, attributes, json_member(json, draco, "attributes"), frame->attributes.form,
                            patch->vertices) &&
+           (frame->kind == GEOM_GUIDES ||
+            read_extra(r, attributes, json_member(json, draco, "attributes"), patch->vertices, &patch->extra)) &&
            accessor_is(r, item_of(r, &r->accessors, primitive, "indices"), "SCALAR", GLB_U16, patch->triangles * 3) &&
            /* as libdraco does: no memory for triangles that the data cannot hold */
            patch->triangles <= patch->size / 3;
@@ -183,6 +220,10 @@ static bool read_patches(const glb_reader *r, uint32_t primitives, glb_frame *ou
             return false;
         }
         strand += out->patches[i].strands;
+        out->extra = out->patches[0].extra;
+        if (out->patches[i].extra != out->extra) {
+            return false;
+        }
     }
     return strand == out->strands;
 }

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "geom/buffer.h"
+#include "geom/draco_extra.h"
 
 #include <tiny_gltf.h>
 
@@ -105,6 +106,17 @@ void add_patch(tinygltf::Model *model, tinygltf::Mesh *mesh, const glb_frame &fr
         attributes["_TURN"] = whole(1);
     }
 
+    for (uint32_t i = 0; i < DRACO_EXTRAS; i++) {
+        const draco_extra_form *extra = draco_extra_at(i);
+        if (frame.extra & extra->attribute) {
+            primitive.attributes[extra->name] =
+                add_accessor(model, extra->components == 2 ? TINYGLTF_TYPE_VEC2 : TINYGLTF_TYPE_SCALAR,
+                             extra->quantised ? TINYGLTF_COMPONENT_TYPE_FLOAT : TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                             patch.vertices);
+            attributes[extra->name] = whole(i + 1);
+        }
+    }
+
     Members draco;
     draco["bufferView"] = whole(static_cast<uint32_t>(model->bufferViews.size()) - 1);
     draco["attributes"] = tinygltf::Value(attributes);
@@ -114,14 +126,15 @@ void add_patch(tinygltf::Model *model, tinygltf::Mesh *mesh, const glb_frame &fr
     mesh->primitives.push_back(primitive);
 }
 
-tinygltf::Material make_material()
+/* Hair is no metal, and is seen from both sides; its highlight is broad. */
+tinygltf::Material make_material(const float colour[3])
 {
     tinygltf::Material material;
     material.name = "hair";
     material.doubleSided = true;
-    material.pbrMetallicRoughness.baseColorFactor = {0.13, 0.07, 0.035, 1.0}; /* brown, linear */
+    material.pbrMetallicRoughness.baseColorFactor = {colour[0], colour[1], colour[2], 1.0};
     material.pbrMetallicRoughness.metallicFactor = 0.0;
-    material.pbrMetallicRoughness.roughnessFactor = 0.55;
+    material.pbrMetallicRoughness.roughnessFactor = 0.45;
     return material;
 }
 
@@ -141,7 +154,10 @@ tinygltf::Node make_node(const glb_frame &frame)
     Members extras{{"kind", tinygltf::Value(std::string(words.kind))},
                    {words.lines, whole(frame.strands)},
                    {words.points, whole(frame.points_per_strand)}};
-    if (frame.kind == GEOM_GUIDES) {
+    if (frame.kind != GEOM_GUIDES) {
+        extras["level"] = tinygltf::Value(std::string(glb_level_name(frame.level)));
+        extras["full_strands"] = whole(frame.full_strands);
+    } else {
         char binding[17];
         std::snprintf(binding, sizeof binding, "%016llx", static_cast<unsigned long long>(frame.binding));
         extras["binding"] = tinygltf::Value(std::string(binding));
@@ -180,7 +196,7 @@ void fill_model(tinygltf::Model *model, const glb_frame &frame)
     model->extensionsUsed = {DRACO_EXTENSION};
     model->extensionsRequired = {DRACO_EXTENSION};
     if (frame.kind != GEOM_GUIDES) {
-        model->materials = {make_material()};
+        model->materials = {make_material(frame.colour)};
     }
 
     tinygltf::Mesh mesh;

@@ -15,6 +15,7 @@ typedef struct glb_patch {
     uint32_t first_strand, strands;
     uint32_t vertices, triangles;
     float min[3], max[3]; /* of the positions as a decoder gives them back */
+    uint32_t extra;       /* as the frame's */
     size_t offset, size;  /* its Draco data in the binary chunk */
 } glb_patch;
 
@@ -35,18 +36,28 @@ static inline glb_words glb_words_of(geom_kind kind)
     return words;
 }
 
+/* What frames call a level. */
+static inline const char *glb_level_name(geom_level level)
+{
+    return level == GEOM_LEVEL_FULL ? "full" : level == GEOM_LEVEL_FIFTH ? "fifth" : "guides";
+}
+
 /* What a GLB of ours says. */
 typedef struct glb_frame {
     geom_kind kind;
+    geom_level level;                    /* of ribbons and strands */
     uint32_t strands, points_per_strand; /* of guides: wisps, and sections of each */
+    uint32_t full_strands;               /* of ribbons and strands: of the hair at level full */
     draco_attributes attributes;         /* of its meshes */
     uint64_t binding;                    /* guides: which one (binding.h) */
     glb_patch *patches;                  /* [patch_count] */
     uint32_t patch_count;
     const unsigned char *binary; /* [binary_size], the binary chunk */
     size_t binary_size;
-    float *widths; /* [points_per_strand] from root to tip, metres; NULL: not said */
-    awt_pose head; /* orientation of length 1 */
+    uint32_t extra;  /* attributes (geom_attribute) of its vertices */
+    float colour[3]; /* of the material, linear; written only */
+    float *widths;   /* [points_per_strand] from root to tip, metres; NULL: not said */
+    awt_pose head;   /* orientation of length 1 */
     int64_t time_us;
 } glb_frame;
 

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "geom/buffer.h"
+#include "geom/draco_extra.h"
 #include "geom/json.h"
 
 #include <stdlib.h>
@@ -60,14 +61,13 @@ static void find_numbers(finder *f, uint32_t array, uint32_t count, uint32_t fie
     }
 }
 
-/* Each patch's accessors: indices, positions or offsets, turns if any. */
-static void find_patches(finder *f, draco_form form, uint32_t patch_count)
+/* Each patch's accessors: indices, positions or offsets, `others`: turns or extra attributes. */
+static void find_patches(finder *f, draco_form form, uint32_t others, uint32_t patch_count)
 {
     const json_document *json = &f->json;
     uint32_t views = json_member(json, 0, "bufferViews"), accessors = json_member(json, 0, "accessors");
-    const uint32_t a_patch = form == DRACO_POSITIONS ? 2 : 3;
-    f->missing =
-        f->missing || json_items(json, views) != patch_count || json_items(json, accessors) != a_patch * patch_count;
+    f->missing = f->missing || json_items(json, views) != patch_count ||
+                 json_items(json, accessors) != (2 + others) * patch_count;
     for (uint32_t i = 0, view = views + 1, accessor = accessors + 1; i < patch_count && !f->missing; i++) {
         uint32_t position = json->tokens[accessor].after;
         find_number(f, json_member(json, view, "byteOffset"), WHOLE_WIDTH, patch_field(i, PATCH_OFFSET));
@@ -78,11 +78,13 @@ static void find_patches(finder *f, draco_form form, uint32_t patch_count)
         }
         view = json->tokens[view].after;
         accessor = json->tokens[position].after;
-        accessor = form != DRACO_POSITIONS && !f->missing ? json->tokens[accessor].after : accessor;
+        for (uint32_t k = 0; k < others && !f->missing; k++) {
+            accessor = json->tokens[accessor].after;
+        }
     }
 }
 
-static void find_all(finder *f, draco_form form, uint32_t patch_count)
+static void find_all(finder *f, draco_form form, uint32_t others, uint32_t patch_count)
 {
     const json_document *json = &f->json;
     uint32_t asset = json_member(json, 0, "asset"), node = json_member(json, 0, "nodes") + 1;
@@ -91,7 +93,7 @@ static void find_all(finder *f, draco_form form, uint32_t patch_count)
     find_numbers(f, json_member(json, node, "translation"), 3, FIELD_POSITION);
     find_numbers(f, json_member(json, node, "rotation"), 4, FIELD_ORIENTATION);
     find_number(f, json_member(json, buffer, "byteLength"), WHOLE_WIDTH, FIELD_BUFFER);
-    find_patches(f, form, patch_count);
+    find_patches(f, form, others, patch_count);
 }
 
 static int by_place(const void *a, const void *b)
@@ -174,7 +176,8 @@ awt_status glb_template_make(const glb_frame *frame, glb_template *out, awt_erro
                         (uint32_t)sample.bytes[GLB_HEADER + 2] << 16 | (uint32_t)sample.bytes[GLB_HEADER + 3] << 24;
         status = json_read((const char *)sample.bytes + GLB_HEADER + GLB_CHUNK_HEADER, size, &f.json, error);
         if (status == AWT_OK) {
-            find_all(&f, frame->attributes.form, frame->patch_count);
+            const uint32_t turns = frame->attributes.form != DRACO_POSITIONS;
+            find_all(&f, frame->attributes.form, turns + draco_extra_count(frame->extra), frame->patch_count);
             status = f.missing ? AWT_BAD_VALUE : AWT_OK;
         }
         if (status == AWT_OK) {

@@ -7,16 +7,18 @@
 
 #include "base/assert.h"
 #include "base/error.h"
+#include "geom/extras.h"
 #include "geom/measure.h"
 #include "geom/topology.h"
 #include "groom/groom.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-/* Number of the first strand, of guides the wisp itself, of finest wisp `g`. */
+/* Number, within the level, of the first strand, of guides the wisp itself, of finest wisp `g`. */
 static uint32_t first_line(const geom_layout *layout, const awt_groom *groom, uint32_t g)
 {
-    return layout->kind == GEOM_GUIDES ? g : groom->gc_strand_first[g];
+    return layout->kind == GEOM_GUIDES ? g : level_first_strand(&layout->level, groom, g);
 }
 
 /* Adds `strands` of a tree to the last patch, or opens a new one where they do not fit. */
@@ -71,6 +73,18 @@ static awt_status check_counts(const awt_groom_info *info, const geom_layout_def
     if (def->kind == GEOM_GUIDES && (def->bits != 0 || def->stock)) {
         return error_set(error, AWT_BAD_VALUE, "guides have the bits of their binding, and no stock encoder");
     }
+    if (def->level > (def->kind == GEOM_GUIDES ? GEOM_LEVEL_FULL : GEOM_LEVEL_GUIDES)) {
+        return error_set(error, AWT_BAD_VALUE, "there is no level %d, of guides none but full", (int)def->level);
+    }
+    if (def->attributes != 0 && (def->stock || def->kind == GEOM_GUIDES || def->attributes > GEOM_ATTRIBUTES_ALL)) {
+        return error_set(error, AWT_BAD_VALUE,
+                         "attributes are there for ribbons and strands by the own encoder, not %u", def->attributes);
+    }
+    for (int k = 0; k < 3; k++) {
+        if (!(def->colour[k] >= 0 && def->colour[k] <= 1)) {
+            return error_set(error, AWT_BAD_VALUE, "a colour's parts are 0 to 1");
+        }
+    }
     if (def->bits != 0 && (def->bits < GEOM_LEAST_BITS || def->bits > GEOM_GREATEST_BITS)) {
         return error_set(error, AWT_BAD_VALUE, "positions are quantised to %d to %d bits, not %d", GEOM_LEAST_BITS,
                          GEOM_GREATEST_BITS, def->bits);
@@ -82,10 +96,11 @@ static awt_status check_counts(const awt_groom_info *info, const geom_layout_def
 static void fill_shape(geom_layout *layout, const awt_groom_info *info, int bits)
 {
     const bool ribbon = layout->kind == GEOM_RIBBON;
-    layout->box = measure_box(info, ribbon ? measure_middle(info) : 0, bits);
+    const float growth = ribbon || layout->kind == GEOM_STRANDS ? level_growth(&layout->level) : 1;
+    layout->box = measure_box(info, ribbon ? measure_middle(info, growth) : 0, bits);
     if (layout->half_width) {
         float least = ribbon ? 0.5f * MEASURE_LEAST_STEPS * draco_box_step(&layout->box) : 0;
-        measure_half_widths(info, least, layout->half_width);
+        measure_half_widths(info, growth, least, layout->half_width);
     }
     layout->shape = (ribbon_shape){.points_per_strand = layout->points_per_strand, .half_width = layout->half_width};
     for (int k = 0; k < 3; k++) {
@@ -114,7 +129,11 @@ static awt_status take_lines(geom_layout *layout, const awt_groom *groom, const 
         }
         return status;
     }
-    layout->strands = info->strand_count;
+    awt_status status = level_strands_make(groom, def->level, &layout->level, error);
+    if (status != AWT_OK) {
+        return status;
+    }
+    layout->strands = layout->level.strands;
     layout->points_per_strand = info->points_per_strand;
     layout->half_width = calloc(info->points_per_strand, sizeof *layout->half_width);
     if (!layout->half_width) {
@@ -164,9 +183,13 @@ static awt_status make_meshes(geom_layout *layout, awt_error *error)
 static awt_status make_template(geom_layout *layout, awt_error *error)
 {
     glb_frame frame = {.kind = layout->kind,
+                       .level = layout->level.level,
                        .strands = layout->strands,
                        .points_per_strand = layout->points_per_strand,
+                       .full_strands = layout->level.full_strands,
                        .attributes = layout->attributes,
+                       .extra = layout->extra,
+                       .colour = {layout->colour[0], layout->colour[1], layout->colour[2]},
                        .binding = layout->binding ? layout->binding->id : 0,
                        .patches = calloc(layout->patch_count, sizeof *frame.patches),
                        .patch_count = layout->patch_count,
@@ -192,6 +215,7 @@ static awt_status make_template(geom_layout *layout, awt_error *error)
 awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def, geom_layout **out, awt_error *error)
 {
     static const geom_layout_def usual = {.kind = GEOM_RIBBON};
+    static const float brown[3] = {0.13f, 0.07f, 0.035f};
     const awt_groom_info *info = &groom->info;
     def = def ? def : &usual;
     *out = NULL;
@@ -205,11 +229,15 @@ awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def
     }
     layout->kind = def->kind;
     layout->stock = def->stock;
+    layout->extra = def->attributes;
+    const bool coloured = def->colour[0] > 0 || def->colour[1] > 0 || def->colour[2] > 0;
+    memcpy(layout->colour, coloured ? def->colour : brown, sizeof layout->colour);
     status = take_lines(layout, groom, def, error);
     if (status == AWT_OK && !make_arrays(layout, groom)) {
         status = error_set(error, AWT_NO_MEMORY, NULL);
     }
     status = status == AWT_OK ? make_meshes(layout, error) : status;
+    status = status == AWT_OK && layout->extra ? extras_add(layout, groom, layout->extra, error) : status;
     status = status == AWT_OK ? make_template(layout, error) : status;
     if (status != AWT_OK) {
         geom_layout_destroy(layout);
@@ -227,6 +255,7 @@ void geom_layout_destroy(geom_layout *layout)
         }
         glb_template_fini(&layout->frame);
         geom_binding_destroy(layout->binding);
+        level_strands_fini(&layout->level);
         free(layout->meshes);
         free(layout->half_width);
         free(layout->patches);
@@ -254,4 +283,20 @@ void geom_layout_unchanged(const geom_layout *layout, const bool *moved, bool *u
             unchanged[i] = unchanged[i] && !moved[t];
         }
     }
+}
+
+uint32_t geom_layout_strands(const geom_layout *layout)
+{
+    return layout->strands;
+}
+
+uint32_t geom_layout_strand(const geom_layout *layout, uint32_t index)
+{
+    return layout->level.number ? layout->level.number[index] : index;
+}
+
+void geom_layout_evaluate(const geom_layout *layout, const awt_groom *groom, const bool *wisps, const float *centres,
+                          const float *frames, float *scratch, float *points)
+{
+    level_evaluate(&layout->level, groom, wisps, centres, frames, scratch, points);
 }

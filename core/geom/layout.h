@@ -7,6 +7,7 @@
 #include "geom/draco_write.h"
 #include "geom/encode.h"
 #include "geom/glb_template.h"
+#include "geom/level.h"
 #include "geom/ribbon.h"
 
 /* Top-level wisps that a patch is of: first .. last. */
@@ -17,10 +18,13 @@ typedef struct layout_trees {
 struct geom_layout {
     geom_kind kind;
     bool stock;
+    level_strands level;                 /* of ribbons and strands: which strands those are */
     draco_attributes attributes;         /* of its meshes */
     uint32_t strands, points_per_strand; /* of guides: finest wisps, and sections of each */
     geom_binding *binding;               /* of guides; else NULL */
     ribbon_shape shape;
+    uint32_t extra; /* attributes (geom_attribute) of its vertices */
+    float colour[3];
     float *half_width;      /* [points_per_strand]; the shape's; of guides NULL */
     draco_box box;          /* one for all patches and all frames */
     quantise_bounds bounds; /* vertices are set onto them */

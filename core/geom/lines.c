@@ -26,7 +26,7 @@ static awt_status read_patches(const glb_frame *frame, draco_reader *reader, con
         const glb_patch *patch = &frame->patches[i];
         const unsigned char *data = frame->binary + patch->offset;
         float *here = vertices + patch->first_strand * a_strand;
-        if (!draco_read(reader, data, patch->size, indices, patch->vertices, patch->triangles, here)) {
+        if (!draco_read(reader, frame->extra, data, patch->size, indices, patch->vertices, patch->triangles, here)) {
             status = other ? other(data, patch->size, indices, patch->vertices, patch->triangles, here, error)
                            : error_set(error, AWT_BAD_FORMAT, "a patch's Draco data is not what awtd's encoder writes");
         }
@@ -77,11 +77,14 @@ awt_status lines_read(glb_frame *frame, lines_decode *other, geom_strands *out, 
     const size_t points = (size_t)frame->strands * frame->points_per_strand;
     const bool ribbon = frame->kind == GEOM_RIBBON;
     geom_strands strands = {.kind = frame->kind,
+                            .level = frame->level,
                             .strand_count = frame->strands,
                             .points_per_strand = frame->points_per_strand,
+                            .full_strand_count = frame->full_strands,
                             .positions = calloc(points, 3 * sizeof(float)),
                             .vertices = ribbon ? calloc(points, 6 * sizeof(float)) : NULL,
                             .patch_count = frame->patch_count,
+                            .attributes = frame->extra,
                             .head = frame->head,
                             .time_us = frame->time_us};
     awt_status status = strands.positions && (strands.vertices || !ribbon) ? AWT_OK : AWT_NO_MEMORY;

@@ -24,13 +24,13 @@ static float width_profile(float t)
     return 1.0f - 0.9f * u * u;
 }
 
-float measure_middle(const awt_groom_info *info)
+float measure_middle(const awt_groom_info *info, float growth)
 {
     float head = (float)(info->head_radius_m / AWT_HEAD_RADIUS_M);
     float density = sqrtf((float)AWT_DEFAULT_STRANDS / (float)info->strand_count);
     float width = WIDTH_M * head * density;
     float greatest = WIDTH_GREATEST_M * head;
-    return 0.5f * (width < greatest ? width : greatest);
+    return 0.5f * growth * (width < greatest ? width : greatest);
 }
 
 draco_box measure_box(const awt_groom_info *info, float half_width, int bits)
@@ -51,9 +51,9 @@ draco_box measure_box(const awt_groom_info *info, float half_width, int bits)
     return box;
 }
 
-void measure_half_widths(const awt_groom_info *info, float least, float *half_width)
+void measure_half_widths(const awt_groom_info *info, float growth, float least, float *half_width)
 {
-    const float middle = measure_middle(info);
+    const float middle = measure_middle(info, growth);
     for (uint32_t i = 0; i < info->points_per_strand; i++) {
         float half = middle * width_profile((float)i / (float)(info->points_per_strand - 1));
         half_width[i] = half > least ? half : least;

@@ -20,14 +20,34 @@ typedef enum geom_kind {
     GEOM_NODES = 3    /* active AWT nodes: for overlays; without a layout (geom_encode_nodes) */
 } geom_kind;
 
+/* How many of the hair's strands a frame of ribbons or strands has, numbered as in QUERY. Fewer are wider: the volume
+ * of the hair is the same. */
+typedef enum geom_level {
+    GEOM_LEVEL_FULL = 0,  /* all */
+    GEOM_LEVEL_FIFTH = 1, /* every fifth */
+    GEOM_LEVEL_GUIDES = 2 /* one a finest wisp */
+} geom_level;
+
+/* What vertices of ribbons and strands have beside their position where it is asked for: bits. None changes from frame
+ * to frame. */
+typedef enum geom_attribute {
+    GEOM_ATTRIBUTE_STRAND = 1,  /* _STRAND: the strand's number within its patch */
+    GEOM_ATTRIBUTE_ROOT_UV = 2, /* TEXCOORD_0: the root's place on the scalp */
+    GEOM_ATTRIBUTE_WIDTH = 4,   /* _WIDTH: of the strand at this point, metres */
+    GEOM_ATTRIBUTES_ALL = 7
+} geom_attribute;
+
 /* A frame read back, in the head frame. */
 typedef struct geom_strands {
     geom_kind kind;
+    geom_level level; /* of guides: full */
     uint32_t strand_count, points_per_strand;
+    uint32_t full_strand_count; /* of the hair at level full */
     float *positions; /* [strand_count][points_per_strand][3]: the points; of ribbons the mean of the two edges */
     float *vertices;  /* of ribbons [strand_count][points_per_strand][2][3]: left and right edge; else NULL */
     float *widths;    /* [points_per_strand]: of every strand from root to tip, metres */
     uint32_t patch_count, triangle_count;
+    uint32_t attributes; /* which the frame has (geom_attribute); they are not read */
     awt_pose head;
     int64_t time_us;
 } geom_strands;

@@ -120,6 +120,7 @@ static awt_status evaluate(const geom_binding *binding, const glb_frame *frame, 
     float *scratch = malloc(evaluate_scratch(binding->sections, binding->points) * sizeof *scratch);
     geom_strands made = {.kind = GEOM_GUIDES,
                          .strand_count = binding->strands,
+                         .full_strand_count = binding->strands,
                          .points_per_strand = binding->points,
                          .positions = malloc(points * 3 * sizeof(float)),
                          .widths = malloc(binding->points * sizeof(float)),

@@ -12,6 +12,7 @@
 #include <string.h>
 
 static const char *const KINDS[] = {"ribbon", "strands"};
+static const char *const LEVELS[] = {"full", "fifth", "guides"};
 static const char *const MOVINGS[] = {"all", "quarter", "none"};
 
 static double mbit_s(const encode_row *row)
@@ -37,25 +38,32 @@ static void table(FILE *text, const encode_plan *plan, const encode_row rows[ENC
     fprintf(text, "%s, %s: %u frames from %.2f s on, one core, medians\n\n",
             plan->groom_file ? plan->groom_file : plan->style->name, plan->clip.description, plan->frames,
             (double)plan->begin_us * 1e-6);
-    fputs(
-        "                            |        encode, ms       |       | million  |  bytes a point  | entropy | error |"
-        "  decode, ms   | Mbit/s\n"
-        "kind      bits moving  pat. |   ours  stock vertices | ratio | points/s |   ours    stock | bits/pt |    mm |"
-        "   ours  stock | at 60 Hz\n",
-        text);
+    fputs("                                   |        encode, ms       |       | million  |  bytes a point  | entropy "
+          "| error |"
+          "  decode, ms   | Mbit/s\n"
+          "kind      level  bits moving  pat. |   ours  stock vertices | ratio | points/s |   ours    stock | bits/pt "
+          "|    mm |"
+          "   ours  stock | at 60 Hz\n",
+          text);
     for (int i = 0; i < ENCODE_ROWS; i++) {
         const encode_row *r = &rows[i];
         char name[16];
-        fprintf(
-            text,
-            "%-9s %4d %-7s %4u | %6.3f %6.2f %8.3f | %4.1fx | %8.1f | %6.3f   %6.3f | %7.2f | %5.3f | %6.2f %6.2f | "
-            "%6.1f\n",
-            row_name(r, name), r->quantisation_bits, MOVINGS[r->moving], r->patches, r->encode_ms, r->stock_encode_ms,
-            r->vertices_ms, r->stock_encode_ms / r->encode_ms, (double)r->points / r->encode_ms * 1e-3,
-            r->bytes_per_point, r->stock_bytes_per_point, r->entropy_bits_per_point, r->max_error_mm, r->decode_ms,
-            r->stock_decode_ms, mbit_s(r));
+        fprintf(text,
+                "%-9s %-6s %4d %-7s %4u | %6.3f %6.2f %8.3f | %4.1fx | %8.1f | %6.3f   %6.3f | %7.2f | %5.3f | %6.2f "
+                "%6.2f | "
+                "%6.1f\n",
+                row_name(r, name), LEVELS[r->level], r->quantisation_bits, MOVINGS[r->moving], r->patches, r->encode_ms,
+                r->stock_encode_ms, r->vertices_ms, r->stock_encode_ms / r->encode_ms,
+                (double)r->points / r->encode_ms * 1e-3, r->bytes_per_point, r->stock_bytes_per_point,
+                r->entropy_bits_per_point, r->max_error_mm, r->decode_ms, r->stock_decode_ms, mbit_s(r));
     }
     fputs("\nstrands-1, strands-3: deltas to the frame before, and to the third one before\n", text);
+    fputs("strands of a level evaluated, ms:", text);
+    for (int level = 0; level < ENCODE_LEVELS; level++) {
+        const encode_row *r = &rows[2 * level * ENCODE_MOVINGS];
+        fprintf(text, " %s %.3f (%zu points)", LEVELS[level], r->evaluate_ms, r->points);
+    }
+    fputs("\n", text);
     fprintf(text, "memory of an encoder: ribbon %.1f MiB, strands %.1f MiB\n", (double)rows[0].scratch_bytes / 1048576,
             (double)rows[ENCODE_MOVINGS].scratch_bytes / 1048576);
 }
@@ -98,7 +106,7 @@ static void json_row(jsonout *j, const encode_row *r)
 {
     jsonout_object(j, NULL);
     jsonout_text(j, "kind", KINDS[r->kind]);
-    jsonout_text(j, "level", "full");
+    jsonout_text(j, "level", LEVELS[r->level]);
     jsonout_bool(j, "delta", r->base_age > 0);
     jsonout_unsigned(j, "base_age_frames", r->base_age);
     jsonout_integer(j, "quantisation_bits", r->quantisation_bits);
@@ -108,6 +116,7 @@ static void json_row(jsonout *j, const encode_row *r)
     jsonout_real(j, "encode_ms", r->encode_ms);
     jsonout_real(j, "stock_encode_ms", r->stock_encode_ms);
     jsonout_real(j, "vertices_ms", r->vertices_ms);
+    jsonout_real(j, "evaluate_ms", r->evaluate_ms);
     jsonout_real(j, "bytes_per_point", r->bytes_per_point);
     jsonout_real(j, "entropy_bits_per_point", r->entropy_bits_per_point);
     jsonout_real(j, "stock_bytes_per_point", r->stock_bytes_per_point);

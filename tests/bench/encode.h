@@ -28,12 +28,14 @@ typedef enum encode_moving { ENCODE_ALL, ENCODE_QUARTER, ENCODE_NONE, ENCODE_MOV
 /* Medians over the frames that were measured, of one core. Times are of whole frames, points to GLB and back. */
 typedef struct encode_row {
     geom_kind kind;
+    geom_level level;
     encode_moving moving;
     uint32_t base_age; /* of a delta: frames from its base to it; 0: a whole frame */
     int quantisation_bits;
     uint32_t patches;
     size_t points;                                 /* strand points of a frame */
     double encode_ms, stock_encode_ms;             /* the stock encoder knows no patches that are kept */
+    double evaluate_ms;                            /* that made the level's strands of the sections */
     double vertices_ms;                            /* the part of both that makes ribbons of strands */
     double bytes_per_point, stock_bytes_per_point; /* of a delta's stock: the same numbers, coded by libdraco */
     double entropy_bits_per_point;                 /* of the differences, without connectivity, tables and JSON */
@@ -44,7 +46,9 @@ typedef struct encode_row {
 
 enum {
     ENCODE_BASES = 2, /* of deltas: the frame before, and the third one before */
-    ENCODE_WHOLE_ROWS = 2 * ENCODE_MOVINGS,
+    ENCODE_LEVELS = 3,
+    ENCODE_SUBJECTS = 2 * ENCODE_LEVELS, /* ribbon and strands of each level, the full one first */
+    ENCODE_WHOLE_ROWS = ENCODE_SUBJECTS * ENCODE_MOVINGS,
     ENCODE_DELTA_ROWS = ENCODE_BASES * ENCODE_MOVINGS,
     ENCODE_ROWS = ENCODE_WHOLE_ROWS + ENCODE_DELTA_ROWS
 };

@@ -110,18 +110,29 @@ typedef struct subject {
     geom_scratch *scratch, *stock_scratch;
     geom_buffer frame, previous, kept, stock_frame;
     draco_reader *reader;
+    float *points; /* of the layout's level */
     float *vertices;
     bool *unchanged;
-    double *encode_ms[ENCODE_MOVINGS], *stock_ms, *vertices_ms, *decode_ms, *stock_decode_ms; /* [frames] */
+    double *encode_ms[ENCODE_MOVINGS], *stock_ms, *vertices_ms, *evaluate_ms, *decode_ms,
+        *stock_decode_ms;                             /* [frames] */
     double bytes, stock_bytes, entropy_bits, error_m; /* sums, and the greatest */
     uint32_t done;
 } subject;
 
-static awt_status make_subject(const hair *h, geom_kind kind, uint32_t frames, subject *s, awt_error *error)
+/* Strand points of a frame. */
+static size_t points_of(const subject *s)
 {
-    awt_status status = geom_layout_create(h->groom, &(geom_layout_def){.kind = kind}, &s->layout, error);
+    return (size_t)geom_layout_strands(s->layout) * s->layout->points_per_strand;
+}
+
+static awt_status make_subject(const hair *h, geom_kind kind, geom_level level, uint32_t frames, subject *s,
+                               awt_error *error)
+{
+    awt_status status =
+        geom_layout_create(h->groom, &(geom_layout_def){.kind = kind, .level = level}, &s->layout, error);
     if (status == AWT_OK) {
-        status = geom_layout_create(h->groom, &(geom_layout_def){.kind = kind, .stock = true}, &s->stock_layout, error);
+        status = geom_layout_create(h->groom, &(geom_layout_def){.kind = kind, .level = level, .stock = true},
+                                    &s->stock_layout, error);
     }
     if (status == AWT_OK) {
         status = geom_scratch_create(s->layout, &s->scratch, error);
@@ -136,7 +147,7 @@ static awt_status make_subject(const hair *h, geom_kind kind, uint32_t frames, s
     status =
         draco_reader_create(layout_patch_vertices(s->layout, &largest),
                             topology_triangles(kind, largest.strands, h->info.points_per_strand), &s->reader, error);
-    double **times[] = {&s->stock_ms, &s->vertices_ms, &s->decode_ms, &s->stock_decode_ms};
+    double **times[] = {&s->stock_ms, &s->vertices_ms, &s->evaluate_ms, &s->decode_ms, &s->stock_decode_ms};
     bool made = true;
     for (size_t k = 0; k < sizeof times / sizeof times[0]; k++) {
         made = (*times[k] = calloc(frames, sizeof(double))) && made;
@@ -145,8 +156,11 @@ static awt_status make_subject(const hair *h, geom_kind kind, uint32_t frames, s
         made = (s->encode_ms[k] = calloc(frames, sizeof(double))) && made;
     }
     s->unchanged = calloc(s->layout->patch_count, sizeof *s->unchanged);
-    s->vertices = calloc((size_t)h->info.strand_count * h->info.points_per_strand, 6 * sizeof(float));
-    return status == AWT_OK && !(made && s->unchanged && s->vertices) ? error_set(error, AWT_NO_MEMORY, NULL) : status;
+    s->points = calloc(points_of(s), 3 * sizeof(float));
+    s->vertices = calloc(points_of(s), 6 * sizeof(float));
+    return status == AWT_OK && !(made && s->unchanged && s->points && s->vertices)
+               ? error_set(error, AWT_NO_MEMORY, NULL)
+               : status;
 }
 
 static void free_subject(subject *s)
@@ -165,6 +179,8 @@ static void free_subject(subject *s)
     }
     free(s->stock_ms);
     free(s->vertices_ms);
+    free(s->evaluate_ms);
+    free(s->points);
     free(s->decode_ms);
     free(s->stock_decode_ms);
     free(s->unchanged);
@@ -187,7 +203,7 @@ static awt_status time_encode(const geom_layout *layout, geom_scratch *scratch, 
     return status;
 }
 
-static awt_status time_own(const hair *h, subject *s, geom_frame_def *def, awt_error *error)
+static awt_status time_own(subject *s, geom_frame_def *def, awt_error *error)
 {
     geom_frame_stats stats = {0};
     geom_buffer swap = s->previous;
@@ -211,7 +227,7 @@ static awt_status time_own(const hair *h, subject *s, geom_frame_def *def, awt_e
     if (s->layout->kind == GEOM_RIBBON) {
         uint32_t clamped = 0;
         double begin = bench_now_ms();
-        ribbon_vertices(&s->layout->shape, h->points, h->info.strand_count, s->vertices, &clamped);
+        ribbon_vertices(&s->layout->shape, s->points, geom_layout_strands(s->layout), s->vertices, &clamped);
         s->vertices_ms[s->done] = bench_now_ms() - begin;
     }
     return status;
@@ -230,8 +246,8 @@ static awt_status time_decode(subject *s, bool stock, double *ms, awt_error *err
         if (stock) {
             status = draco_shim_decode(glb.binary + patch->offset, patch->size, s->layout->indices, patch->vertices,
                                        patch->triangles, out, error);
-        } else if (!draco_read(s->reader, glb.binary + patch->offset, patch->size, s->layout->indices, patch->vertices,
-                               patch->triangles, out)) {
+        } else if (!draco_read(s->reader, 0, glb.binary + patch->offset, patch->size, s->layout->indices,
+                               patch->vertices, patch->triangles, out)) {
             status = error_set(error, AWT_BAD_FORMAT, "our reader refuses what our encoder wrote");
         }
     }
@@ -241,9 +257,9 @@ static awt_status time_decode(subject *s, bool stock, double *ms, awt_error *err
 }
 
 /* The greatest distance of a decoded point (of a ribbon: the middle of its edges) from the one that went in. */
-static double greatest_error(const hair *h, const subject *s)
+static double greatest_error(const subject *s)
 {
-    const size_t points = (size_t)h->info.strand_count * h->info.points_per_strand;
+    const size_t points = points_of(s);
     const bool ribbon = s->layout->kind == GEOM_RIBBON;
     double greatest = 0;
     for (size_t i = 0; i < points; i++) {
@@ -251,7 +267,7 @@ static double greatest_error(const hair *h, const subject *s)
         for (size_t k = 0; k < 3; k++) {
             double at = ribbon ? 0.5 * ((double)s->vertices[6 * i + k] + (double)s->vertices[6 * i + 3 + k])
                                : (double)s->vertices[3 * i + k];
-            square += (at - (double)h->points[3 * i + k]) * (at - (double)h->points[3 * i + k]);
+            square += (at - (double)s->points[3 * i + k]) * (at - (double)s->points[3 * i + k]);
         }
         greatest = square > greatest ? square : greatest;
     }
@@ -260,8 +276,11 @@ static double greatest_error(const hair *h, const subject *s)
 
 static awt_status measure_frame(const hair *h, subject *s, int64_t time_us, awt_error *error)
 {
-    geom_frame_def def = {.points = h->points, .head = awt_forest_head(h->forest), .time_us = time_us};
-    awt_status status = time_own(h, s, &def, error);
+    double begin = bench_now_ms();
+    geom_layout_evaluate(s->layout, h->groom, NULL, h->centres, h->frames, h->scratch, s->points);
+    s->evaluate_ms[s->done] = bench_now_ms() - begin;
+    geom_frame_def def = {.points = s->points, .head = awt_forest_head(h->forest), .time_us = time_us};
+    awt_status status = time_own(s, &def, error);
     if (status == AWT_OK) {
         status = time_encode(s->stock_layout, s->stock_scratch, &def, 1, &s->stock_frame, NULL, &s->stock_ms[s->done],
                              error);
@@ -274,7 +293,7 @@ static awt_status measure_frame(const hair *h, subject *s, int64_t time_us, awt_
         status = time_decode(s, false, &s->decode_ms[s->done], error);
     }
     if (status == AWT_OK) {
-        s->error_m = fmax(s->error_m, greatest_error(h, s));
+        s->error_m = fmax(s->error_m, greatest_error(s));
         s->done++;
     }
     return status;
@@ -288,15 +307,17 @@ static double median(double *values, uint32_t count)
     return quantile_at(values, count, 0.5);
 }
 
-static void fill_rows(const hair *h, subject *s, encode_row *rows)
+static void fill_rows(subject *s, encode_row *rows)
 {
-    const size_t points = (size_t)h->info.strand_count * h->info.points_per_strand;
+    const size_t points = points_of(s);
     const double all = (double)points * s->done;
     encode_row row = {.kind = s->layout->kind,
+                      .level = s->layout->level.level,
                       .quantisation_bits = s->layout->box.bits,
                       .patches = s->layout->patch_count,
                       .points = points,
                       .stock_encode_ms = median(s->stock_ms, s->done),
+                      .evaluate_ms = median(s->evaluate_ms, s->done),
                       .vertices_ms = median(s->vertices_ms, s->done),
                       .bytes_per_point = s->bytes / all,
                       .stock_bytes_per_point = s->stock_bytes / all,
@@ -312,8 +333,8 @@ static void fill_rows(const hair *h, subject *s, encode_row *rows)
     }
 }
 
-static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects[2], delta_subject *deltas,
-                              guides_subject *guides, awt_error *error)
+static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects[ENCODE_SUBJECTS],
+                              delta_subject *deltas, guides_subject *guides, awt_error *error)
 {
     progress bar = progress_begin(stderr, "encoding", false);
     const uint32_t frames = plan->frames * plan->stride;
@@ -328,8 +349,8 @@ static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects
             awt_groom_strands(h->groom, h->centres, h->frames, h->scratch, h->points);
             status = delta_subject_frame(deltas, h->points, &head, time_us, measured, error);
         }
-        for (int kind = 0; kind < 2 && measured && status == AWT_OK; kind++) {
-            status = measure_frame(h, &subjects[kind], time_us, error);
+        for (int k = 0; k < ENCODE_SUBJECTS && measured && status == AWT_OK; k++) {
+            status = measure_frame(h, &subjects[k], time_us, error);
         }
         if (measured && status == AWT_OK) {
             status = guides_measure(guides, h->forest, h->centres, h->frames, h->points, error);
@@ -344,7 +365,7 @@ bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS], guide
                     size_t *binding_bytes)
 {
     hair h = {0};
-    subject subjects[2] = {{0}};
+    subject subjects[ENCODE_SUBJECTS] = {{0}};
     delta_subject *deltas = NULL;
     guides_subject guides = {0};
     awt_error error = {0};
@@ -352,8 +373,9 @@ bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS], guide
     if (status == AWT_OK) {
         status = guides_subject_init(&guides, h.groom, plan->frames, &error);
     }
-    for (int kind = 0; kind < 2 && status == AWT_OK; kind++) {
-        status = make_subject(&h, kind ? GEOM_STRANDS : GEOM_RIBBON, plan->frames, &subjects[kind], &error);
+    for (int k = 0; k < ENCODE_SUBJECTS && status == AWT_OK; k++) {
+        status = make_subject(&h, k % 2 ? GEOM_STRANDS : GEOM_RIBBON, (geom_level)(k / 2), plan->frames, &subjects[k],
+                              &error);
     }
     if (status == AWT_OK) {
         status = delta_subject_create(h.groom, plan->frames, &deltas, &error);
@@ -365,11 +387,11 @@ bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS], guide
         delta_subject_rows(deltas, rows + ENCODE_WHOLE_ROWS);
     }
     delta_subject_destroy(deltas);
-    for (int kind = 0; kind < 2; kind++) {
+    for (int k = 0; k < ENCODE_SUBJECTS; k++) {
         if (status == AWT_OK) {
-            fill_rows(&h, &subjects[kind], rows + kind * ENCODE_MOVINGS);
+            fill_rows(&subjects[k], rows + k * ENCODE_MOVINGS);
         }
-        free_subject(&subjects[kind]);
+        free_subject(&subjects[k]);
     }
     if (status == AWT_OK) {
         guides_rows(&guides, of_guides);

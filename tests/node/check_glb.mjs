@@ -52,6 +52,8 @@ function checkFrame({ json, node }, faults) {
     expect(node.extras.turn_bits >= 10 && node.extras.turn_bits <= 14, `turns of ${node.extras.turn_bits} bits`);
     expect(typeof node.extras.bound === 'boolean', 'it does not say whether it is bound');
   } else {
+    expect(['full', 'fifth', 'guides'].includes(node.extras?.level), `no level is called ${node.extras?.level}`);
+    expect(node.extras?.strands <= node.extras?.full_strands, 'it has more strands than the hair');
     expect(node.extras?.widths?.length === node.extras?.points_per_strand, 'no width for each point of a strand');
     const material = json.materials[0];
     expect(material.name === 'hair' && material.doubleSided, 'the material is not a doubleSided one named hair');

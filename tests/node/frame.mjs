@@ -84,7 +84,7 @@ function decodePrimitive(draco, json, binary, primitive) {
   const extension = primitive.extensions.KHR_draco_mesh_compression;
   const view = json.bufferViews[extension.bufferView];
   const data = new Int8Array(binary.buffer, binary.byteOffset + (view.byteOffset ?? 0), view.byteLength);
-  const { POSITION: position, ...others } = extension.attributes;
+  const { POSITION: position, _STRAND, TEXCOORD_0, _WIDTH, ...others } = extension.attributes; // three are check_others.mjs'
   const attribute = (decoder, mesh, id) => decoder.GetAttributeByUniqueId(mesh, id);
   const decoded = withMesh(draco, data, () => {}, (decoder, mesh) => ({
     positions: position === undefined ? null : readPositions(draco, decoder, mesh, attribute(decoder, mesh, position)),
@@ -99,12 +99,13 @@ function decodePrimitive(draco, json, binary, primitive) {
 }
 
 /** { json, node, primitives: [{ positions, numbers, indices, box, mode, extras, accessors }] } of a frame: positions and box
- * are null where there are none, numbers and accessors go by the attribute's name (and accessors.indices). */
-export async function readFrame(bytes) {
+ * are null where there are none, numbers and accessors go by the attribute's name (and accessors.indices). `most`: primitives
+ * to read. */
+export async function readFrame(bytes, most = Infinity) {
   dracoModule ??= await draco3d.createDecoderModule({});
   const { json, binary } = splitGlb(bytes);
   const node = json.nodes[json.scenes[json.scene].nodes[0]];
-  const primitives = json.meshes[node.mesh].primitives.map((primitive) => ({
+  const primitives = json.meshes[node.mesh].primitives.slice(0, most).map((primitive) => ({
     ...decodePrimitive(dracoModule, json, binary, primitive),
     mode: primitive.mode,
     extras: primitive.extras ?? {},

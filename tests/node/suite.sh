@@ -1,13 +1,13 @@
 #!/bin/sh
 # suite.sh BUILD: gltf-validator and draco3d judge frames of the encoder, against the positions that went in, and what the command
-# line client leaves behind after playing each style; the receiver as WebAssembly makes strands of guides, and is built for Windows.
+# line client leaves behind after playing each style; three.js, gltf-transform and tinygltf load them and must agree; the receiver as WebAssembly makes strands of guides, and is built for Windows.
 set -u
 cd "$(dirname "$0")/../.."
 build=$1
 passed=0 failed=0 skipped=0
 if [ ! -d tests/node/node_modules/gltf-validator ] || ! command -v node >/dev/null 2>&1; then
     echo "skip: node or its packages are not here"
-    echo "0 passed, 0 failed, 9 skipped"
+    echo "0 passed, 0 failed, 15 skipped"
     exit 0
 fi
 work=$(mktemp -d)
@@ -46,22 +46,43 @@ cross() {
         echo "FAIL $name"
     fi
 }
+# others NAME: the same files before the loaders that people use. Bound guides have no positions that these could compare.
+others() {
+    files=$(ls "$work/$1"/*.glb | grep -v bound)
+    cross "$1 as others load them" true load $files
+}
+load() {
+    "$build/read_tinygltf" "$@" && node tests/node/check_others.mjs "$@"
+}
 as_webassembly() {
     make --no-print-directory "$build/receiver.wasm" B="$build" && node tests/node/check_receiver.mjs "$build/receiver.wasm" "$work/guides"
 }
 
+if ! make --no-print-directory "$build/read_tinygltf" B="$build" >"$work/cross.log" 2>&1; then
+    failed=$((failed + 1))
+    cat "$work/cross.log"
+    echo "FAIL tinygltf with Draco does not build"
+fi
+
 mkdir "$work/nodes"
 checker=tests/node/check_nodes.mjs
 judge nodes env AWT_FRAMES="$work/nodes" "$build/tests" geom_nodes_for_other_readers
+others nodes
 checker=tests/node/check_glb.mjs
 
 mkdir "$work/guides"
 judge guides env AWT_FRAMES="$work/guides" "$build/tests" geom_guides_for_other_receivers
+others guides
 cross "receiver for Windows" x86_64-w64-mingw32-gcc make --no-print-directory "$build/receiver.dll" B="$build"
 cross "receiver as WebAssembly" emcc as_webassembly
 
 mkdir "$work/frames"
 judge frames env AWT_FRAMES="$work/frames" "$build/tests" geom_frames_for_other_readers
+others frames
+
+mkdir "$work/attributes"
+judge attributes env AWT_FRAMES="$work/attributes" "$build/tests" geom_attributes_for_other_readers
+others attributes
 
 "$build/awtd" --listen 127.0.0.1:0 --state-dir "$work/state" >"$work/out" 2>"$work/log" &
 daemon=$!

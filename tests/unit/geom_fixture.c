@@ -59,7 +59,8 @@ void geom_fixture_init(geom_fixture *f, uint32_t strands, uint32_t points_per_st
     f->groom.gc_strand_first = calloc(trees + 1, sizeof(uint32_t));
     size_t points = (size_t)strands * points_per_strand;
     f->points = calloc(points, 3 * sizeof(float));
-    ASSERT(f->groom.gc_tree && f->groom.gc_strand_first && f->points);
+    f->groom.strand_offset = calloc(points, 3 * sizeof(float));
+    ASSERT(f->groom.gc_tree && f->groom.gc_strand_first && f->points && f->groom.strand_offset);
     for (uint32_t t = 0; t < trees; t++) {
         f->groom.gc_tree[t] = t;
         f->groom.gc_strand_first[t + 1] = (uint32_t)((uint64_t)strands * (t + 1) / trees);
@@ -67,6 +68,12 @@ void geom_fixture_init(geom_fixture *f, uint32_t strands, uint32_t points_per_st
     rng r = rng_seed(strands + points_per_strand);
     for (uint32_t s = 0; s < strands; s++) {
         grow_strand(&r, points_per_strand, f->points + (size_t)s * points_per_strand * 3);
+    }
+    for (size_t s = 0; s < strands; s++) { /* as if all wisps stood still in the head's centre */
+        for (size_t i = 0; i < 3 * (size_t)points_per_strand; i++) {
+            const size_t at = s * 3 * points_per_strand;
+            f->groom.strand_offset[at + i % 3 * points_per_strand + i / 3] = f->points[at + i];
+        }
     }
     bound_points(f, points);
     geom_fixture_layout(f, NULL);
@@ -90,6 +97,7 @@ void geom_fixture_fini(geom_fixture *f)
     geom_layout_destroy(f->layout);
     free(f->groom.gc_tree);
     free(f->groom.gc_strand_first);
+    free(f->groom.strand_offset);
     free(f->points);
     *f = (geom_fixture){0};
 }

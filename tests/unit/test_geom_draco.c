@@ -70,7 +70,7 @@ static bool read_row(const row *r, const unsigned char *bytes, size_t size, floa
 {
     draco_reader *reader = NULL;
     CHECK_INT(draco_reader_create(r->vertices, r->triangles, &reader, NULL), AWT_OK);
-    bool read = draco_read(reader, bytes, size, r->indices, r->vertices, r->triangles, positions);
+    bool read = draco_read(reader, 0, bytes, size, r->indices, r->vertices, r->triangles, positions);
     draco_reader_destroy(reader);
     return read;
 }

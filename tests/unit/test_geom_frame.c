@@ -9,7 +9,6 @@
 #include "unit/geom_fixture.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -340,70 +339,4 @@ TEST(geom_hair_that_rests_decodes_to_the_same_bits_while_other_hair_moves)
     geom_strands_fini(&before);
     geom_strands_fini(&after);
     geom_fixture_fini(&f);
-}
-
-static bool write_file(const char *folder, const char *name, const void *bytes, size_t size)
-{
-    char path[1024];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "wb");
-    bool written = file && fwrite(bytes, 1, size, file) == size;
-    return file && fclose(file) == 0 && written;
-}
-
-/* Vertices as they went in: a ribbon's, or the strands' points. */
-static void write_vertices(const geom_fixture *f, const char *folder, const char *name)
-{
-    const uint32_t strands = f->layout->strands, per_strand = f->layout->points_per_strand;
-    const bool ribbon = f->layout->kind == GEOM_RIBBON;
-    const size_t size = (size_t)strands * per_strand * (ribbon ? 6 : 3) * sizeof(float);
-    uint32_t clamped = 0;
-    float *vertices = malloc(size);
-    CHECK(vertices != NULL);
-    if (ribbon) {
-        CHECK(ribbon_vertices(&f->layout->shape, f->points, strands, vertices, &clamped));
-    } else {
-        memcpy(vertices, f->points, size);
-    }
-    CHECK(write_file(folder, name, vertices, size));
-    free(vertices);
-}
-
-/* One shape of hair as a frame of each kind by each encoder. */
-static void write_frames(const char *folder, const uint32_t shape[3], bool alike)
-{
-    static const char *const kinds[] = {"ribbon", "strands"};
-    const uint32_t strands = shape[0], per_strand = shape[1];
-    geom_fixture f;
-    char name[64];
-    geom_fixture_init(&f, strands, per_strand, shape[2]);
-    for (uint32_t k = 0; k < strands * per_strand && alike; k++) { /* straight up: padded */
-        f.points[3 * k] = f.points[3 * k + 2] = 0.01f;
-        f.points[3 * k + 1] = 0.1f + 0.0001f * (float)(k % per_strand);
-    }
-    for (int n = 0; n < 4; n++) {
-        const bool stock = n & 1;
-        geom_fixture_layout(&f, &(geom_layout_def){.kind = n / 2 ? GEOM_STRANDS : GEOM_RIBBON, .stock = stock});
-        geom_fixture_encode(&f, NULL);
-        snprintf(name, sizeof name, "%s-%ux%u%s.glb", kinds[n / 2], strands, per_strand, stock ? "-stock" : "");
-        CHECK(write_file(folder, name, f.frame.bytes, f.frame.size));
-        strcat(name, ".f32");
-        write_vertices(&f, folder, name);
-    }
-    geom_fixture_fini(&f);
-}
-
-TEST(geom_frames_for_other_readers)
-{
-    const char *folder = getenv("AWT_FRAMES");
-    if (!folder) {
-        check_skip("AWT_FRAMES names no folder to write frames to, for tests/node/check_glb.mjs");
-        return;
-    }
-    const uint32_t shapes[][3] = {{1, 2, 1},       {1, 3, 1},     {1, 16, 1},      {40, 16, 3}, {300, 32, 4},
-                                  {10000, 16, 60}, {500, 100, 5}, {50000, 4, 200}, {600, 24, 6}};
-    const size_t count = sizeof shapes / sizeof shapes[0];
-    for (size_t i = 0; i < count; i++) {
-        write_frames(folder, shapes[i], i + 1 == count);
-    }
 }

@@ -128,10 +128,12 @@ TEST(geom_reader_refuses_a_json_that_lies)
     geom_fixture_encode(&f, NULL);
     geom_buffer *frame = &f.frame;
     CHECK_INT(read_with(frame, "\"strands\":3000", "\"strands\":3000"), AWT_OK);
-    CHECK_INT(read_with(frame, "\"strands\":3000", "\"strands\":3001"), AWT_BAD_FORMAT);
+    CHECK_INT(read_with(frame, "\"strands\":3000", "\"strands\":3001"), AWT_BAD_VALUE);
     CHECK_INT(read_with(frame, "\"strands\":3000", "\"strands\":9e99"), AWT_BAD_VALUE);
     CHECK_INT(read_with(frame, "\"strands\":3000", "\"strands\":-300"), AWT_BAD_VALUE);
-    CHECK_INT(read_with(frame, "\"strands\":3000", "\"strands\":2e+5"), AWT_BAD_FORMAT);
+    CHECK_INT(read_with(frame, "\"strands\":3000", "\"strands\":2e+5"), AWT_BAD_VALUE);
+    CHECK_INT(read_with(frame, "\"full_strands\":3000", "\"full_strands\":3001"), AWT_BAD_VALUE);
+    CHECK_INT(read_with(frame, "\"level\":\"full\"", "\"level\":\"wide\""), AWT_BAD_VALUE);
     CHECK_INT(read_with(frame, "\"strands\":1000", "\"strands\":1001"), AWT_BAD_FORMAT);
     CHECK_INT(read_with(frame, "\"strands\":1000", "\"strands\":0000"), AWT_BAD_FORMAT);
     CHECK_INT(read_with(frame, "\"points_per_strand\":16", "\"points_per_strand\":17"), AWT_BAD_VALUE);
