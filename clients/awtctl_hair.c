@@ -98,7 +98,7 @@ static void show_making(void *context, const struct proto_progress *heard)
     } stages[] = {{"waiting for a worker", 0.0},
                   {"reading the strands", 0.0},
                   {"building the wisps", 0.4},
-                  {"drawing the first frame", 0.7},
+                  {"preparing to draw", 0.7},
                   {"done", 1.0}};
     enum { LAST = sizeof stages / sizeof stages[0] - 2 };
     making *m = context;

@@ -76,7 +76,7 @@ static bool accept_created(service *shared, resident *r, session *asker)
 {
     char quoted[LOG_QUOTED];
     log_quote(r->name, strlen(r->name), quoted);
-    if (!r->work.frame) {
+    if (!r->work.drawn) {
         char why[LOG_QUOTED];
         log_write(LOG_INFO, "forest not made", "name=%s why=%s", quoted,
                   log_quote(r->work.error.text, strlen(r->work.error.text), why));
@@ -98,14 +98,12 @@ static bool accept_created(service *shared, resident *r, session *asker)
     return false;
 }
 
-/* The latest frame is the resident's from now on. */
-static void take_frame(service *shared, resident *r)
+/* What was drawn is the resident's from now on. */
+static void take_picture(service *shared, resident *r)
 {
-    published_release(r->latest);
-    r->latest = r->work.frame;
-    r->work.frame = NULL;
-    r->sequence = r->latest->frame.sequence;
-    shared->counters.frames_encoded++;
+    shared->counters.frames_encoded += r->work.drawn->view_count;
+    registry_publish(r, r->work.drawn);
+    r->work.drawn = NULL;
 }
 
 static void take_created(service *shared, resident *r)
@@ -120,14 +118,14 @@ static void take_created(service *shared, resident *r)
     r->params = r->work.making->params;
     if (accept_created(shared, r, asker)) {
         r->ready = true;
-        take_frame(shared, r);
+        take_picture(shared, r);
         reply_created(asker, r);
     }
     recipe_destroy(r->work.making);
     r->work.making = NULL;
 }
 
-/* ---- QUERY ------------------------------------------------------------------------------------------------------- */
+/* ---- QUERY and BINDING ------------------------------------------------------------------------------------------- */
 
 /* Tells the senders of motions that the forest would not take. */
 static const forest_input *report_refused(service *shared, const forest_input *inputs)
@@ -143,27 +141,58 @@ static const forest_input *report_refused(service *shared, const forest_input *i
     return input;
 }
 
-static void take_advanced(service *shared, resident *r)
+/* Answers with the view asked for, or with `error` where it is missing. */
+static void answer(service *shared, const forest_input *asked, picture *shown, const view *v, const awt_error *error)
 {
-    const forest_input *query = report_refused(shared, r->work.inputs);
-    session *asker = session_find(shared, query->from);
-    if (asker) {
-        asker->pending--;
+    session *asker = session_find(shared, asked->from);
+    if (!asker) {
+        return;
     }
-    if (r->work.frame) {
-        take_frame(shared, r);
-        if (asker) {
-            session_frame(asker, r->latest, query->from.request);
-        }
+    asker->pending--;
+    if (v) {
+        session_picture(asker, shown, v, asked->from.request);
+    } else {
+        session_error_awt(asker, asked->kind == FOREST_BINDING ? PROTO_BINDING : PROTO_QUERY, asked->from.request,
+                          error);
+    }
+}
+
+/* The step's QUERY, then all who only look. */
+static void answer_all(service *shared, resident *r)
+{
+    const forest_input *query = r->work.inputs ? report_refused(shared, r->work.inputs) : NULL;
+    if (query) {
+        const view *v = r->work.stepped ? picture_view(r->latest, (view_name){.form = query->as.query.form}) : NULL;
+        answer(shared, query, r->latest, v, r->work.stepped ? &r->work.draw_error : &r->work.error);
+    }
+    for (const forest_input *look = r->work.looks; look; look = look->next) {
+        const bool binding = look->kind == FOREST_BINDING;
+        picture *shown = binding ? r->binding : r->latest;
+        const view_name name = {.form = binding ? PICTURE_BINDING : look->as.query.form};
+        answer(shared, look, shown, picture_view(shown, name), &r->work.draw_error);
+    }
+    forest_inputs_free(r->work.inputs);
+    forest_inputs_free(r->work.looks);
+    r->work.inputs = r->work.looks = NULL;
+}
+
+static void take_drawn(service *shared, resident *r)
+{
+    const bool drawn = r->work.drawn != NULL;
+    if (drawn) {
+        take_picture(shared, r);
+    }
+    if (r->work.binding) {
+        r->binding = r->work.binding;
+        r->work.binding = NULL;
+    }
+    answer_all(shared, r);
+    if (drawn) {
         subscriptions_offer(r, r->latest);
         for (subscription *sub = r->subscriptions; sub; sub = sub->next_of_forest) {
             session_stream(sub->session);
         }
-    } else if (asker) {
-        session_error_awt(asker, PROTO_QUERY, query->from.request, &r->work.error);
     }
-    forest_inputs_free(r->work.inputs);
-    r->work.inputs = NULL;
 }
 
 /* ---- both -------------------------------------------------------------------------------------------------------- */
@@ -181,7 +210,7 @@ bool completions_take(service *shared)
         if (r->work.making) {
             take_created(shared, r);
         } else {
-            take_advanced(shared, r);
+            take_drawn(shared, r);
         }
         registry_continue(&shared->forests, r);
         done = next;

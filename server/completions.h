@@ -4,8 +4,8 @@
 
 #include "service.h"
 
-/* Takes every finished job: answers CREATE and QUERY, publishes frames to subscribers, reports refused motions, frees
- * doomed forests, has the next jobs run. On the I/O thread. True if there were any. */
+/* Takes every finished job: answers CREATE, QUERY and BINDING, offers pictures to subscribers, reports refused motions,
+ * frees doomed forests, has the next jobs run. On the I/O thread. True if there were any. */
 bool completions_take(service *shared);
 
 #endif

@@ -53,13 +53,13 @@ static void sink_message(void *context, const proto_message *message)
     }
 }
 
-static void sink_frame(void *context, published *frame, uint64_t request, uint32_t skipped)
+static void sink_picture(void *context, picture *shown, const view *v, uint64_t request, uint32_t skipped)
 {
     connection *c = context;
     before_output(c);
     if (c->output_failed) {
-        published_release(frame);
-    } else if (!output_add_frame(&c->out, frame, request, skipped)) {
+        picture_release(shown);
+    } else if (!output_add_picture(&c->out, shown, v, request, skipped)) {
         end(c, "no memory");
     }
 }
@@ -75,7 +75,7 @@ static bool sink_drained(void *context)
 connection *connection_create(service *shared, int fd, const char *peer)
 {
     connection *c = calloc(1, sizeof *c);
-    session_sink sink = {.context = c, .message = sink_message, .frame = sink_frame, .drained = sink_drained};
+    session_sink sink = {.context = c, .message = sink_message, .picture = sink_picture, .drained = sink_drained};
     if (!c || !session_init(&c->talk, shared, &sink, peer)) {
         free(c);
         close(fd);

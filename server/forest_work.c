@@ -64,31 +64,6 @@ static awt_status make_groom(forest_work *w, const awt_strands *strands, awt_err
     return status;
 }
 
-static float *make_floats(uint64_t count)
-{
-    return count <= SIZE_MAX / sizeof(float) ? malloc((size_t)(count ? count : 1) * sizeof(float)) : NULL;
-}
-
-/* Everything that a frame needs, so that later frames allocate nothing but themselves. */
-static awt_status make_buffers(forest_work *w, awt_error *error)
-{
-    awt_groom_get_info(w->groom, &w->info);
-    uint64_t points = (uint64_t)w->info.strand_count * w->info.points_per_strand;
-    if (points > AWT_MAX_POINTS) {
-        return error_set(error, AWT_LIMIT, "%lu strands of %lu points are more than %d points together",
-                         (unsigned long)w->info.strand_count, (unsigned long)w->info.points_per_strand, AWT_MAX_POINTS);
-    }
-    w->centres = make_floats((uint64_t)w->info.finest_nodes * 3);
-    w->frames = make_floats((uint64_t)w->info.finest_nodes * 4);
-    w->strand_scratch = make_floats(awt_groom_strand_scratch(w->groom));
-    w->points = make_floats(points * 3);
-    if (!w->centres || !w->frames || !w->strand_scratch || !w->points) {
-        return error_set(error, AWT_NO_MEMORY, NULL);
-    }
-    awt_status status = geom_layout_create(w->groom, NULL, &w->layout, error);
-    return status == AWT_OK ? geom_scratch_create(w->layout, &w->scratch, error) : status;
-}
-
 static awt_status make_forest(forest_work *w, awt_error *error)
 {
     recipe *r = w->making;
@@ -119,7 +94,8 @@ static awt_status make_hair(forest_work *w, awt_error *error)
     awt_strands_fini(&strands);
     note_stage(w, FOREST_DRAWS, 0);
     if (status == AWT_OK) {
-        status = make_buffers(w, error);
+        awt_groom_get_info(w->groom, &w->info);
+        status = drawing_create(w->groom, &w->draws, error);
     }
     return status == AWT_OK ? make_forest(w, error) : status;
 }
@@ -140,48 +116,96 @@ static const forest_input *take_inputs(forest_work *w)
     return input;
 }
 
-/* ---- publishing ------------------------------------------------------------------------------------------------ */
-
-static void fill_frame(forest_work *w, published *out, const awt_step_stats *step, const geom_frame_stats *drawn)
+/* A new forest is brought to where it stands: no step, but its active nodes are counted. */
+static awt_status advance(forest_work *w, awt_error *error)
 {
-    struct proto_frame *f = &out->frame;
-    f->forest = w->handle;
-    f->sequence = w->sequence;
-    f->time_us = step->time_us;
-    f->active_nodes = step->active_nodes;
-    f->splits = step->splits;
-    f->merges = step->merges;
-    f->steps = step->steps;
-    f->unreached_contacts = step->unreached_contacts;
-    f->clamped_speeds = step->clamped_speeds;
-    f->link_error = step->link_error;
-    f->kinetic_energy_j = step->kinetic_energy_j;
-    f->clamped_points = drawn->clamped_points;
-    f->glb = (proto_blob){.bytes = out->glb.bytes, .length = (uint32_t)out->glb.size};
-}
-
-/* Guides, strands, ribbons, Draco, GLB: the state as a frame that nobody will change. */
-static awt_status publish(forest_work *w, const awt_step_stats *step, int64_t stepped_us, awt_error *error)
-{
-    published *out = published_create();
-    if (!out) {
-        return error_set(error, AWT_NO_MEMORY, NULL);
-    }
-    awt_forest_guides(w->forest, w->centres, w->frames);
-    awt_groom_strands(w->groom, w->centres, w->frames, w->strand_scratch, w->points);
-    const geom_frame_def def = {.points = w->points, .head = awt_forest_head(w->forest), .time_us = step->time_us};
-    geom_frame_stats drawn = {0};
-    awt_status status = geom_encode(w->layout, w->scratch, &def, &out->glb, &drawn, error);
+    int64_t to_us = w->making ? w->making->start.time_us : take_inputs(w)->as.query.time_us;
+    int64_t begun_us = clock_monotonic_us();
+    awt_step_stats step = {0};
+    awt_status status = awt_forest_advance(w->forest, to_us, &step, error);
+    int64_t ended_us = clock_monotonic_us();
+    w->steps = step.steps;
+    w->step_us = clock_between_us(begun_us, ended_us);
     if (status != AWT_OK) {
-        published_release(out);
         return status;
     }
-    fill_frame(w, out, step, &drawn);
-    out->stepped_us = stepped_us;
-    out->frame.encode_us = clock_between_us(stepped_us, clock_monotonic_us());
-    w->encode_us = out->frame.encode_us;
-    w->frame = out;
+    w->stepped = true;
+    w->sequence++;
+    w->stepped_us = ended_us;
+    w->figures = (struct proto_frame){.forest = w->handle,
+                                      .sequence = w->sequence,
+                                      .time_us = step.time_us,
+                                      .active_nodes = step.active_nodes,
+                                      .splits = step.splits,
+                                      .merges = step.merges,
+                                      .steps = step.steps,
+                                      .unreached_contacts = step.unreached_contacts,
+                                      .clamped_speeds = step.clamped_speeds,
+                                      .link_error = step.link_error,
+                                      .kinetic_energy_j = step.kinetic_energy_j,
+                                      .step_us = (uint32_t)w->step_us};
     return AWT_OK;
+}
+
+/* ---- drawing --------------------------------------------------------------------------------------------------- */
+
+/* The picture, without views yet. NULL: no memory. */
+static picture *begin_picture(forest_work *w, int64_t begun_us)
+{
+    picture *out = w->spare ? w->spare : picture_create();
+    w->spare = NULL;
+    if (out) {
+        out->figures = w->figures;
+        out->figures.queue_us = clock_between_us(w->submitted_us, begun_us);
+        out->stepped_us = w->stepped_us;
+    }
+    return out;
+}
+
+static awt_status draw_binding(forest_work *w, awt_error *error)
+{
+    size_t size = 0;
+    awt_status status = geom_binding_write(w->groom, NULL, 0, &size, error);
+    if (status == AWT_OK && size > GEOM_MAX_GLB) {
+        status = error_set(error, AWT_LIMIT, "the binding has %zu bytes; a message takes %d", size, GEOM_MAX_GLB);
+    }
+    picture *out = status == AWT_OK ? picture_create() : NULL;
+    if (!out) {
+        return status == AWT_OK ? error_set(error, AWT_NO_MEMORY, NULL) : status;
+    }
+    view *v = picture_add(out, (view_name){.form = PICTURE_BINDING});
+    out->figures.forest = w->handle;
+    v->glb.bytes = malloc(size);
+    v->glb.capacity = v->glb.size = size;
+    status = v->glb.bytes ? geom_binding_write(w->groom, v->glb.bytes, size, &size, error)
+                          : error_set(error, AWT_NO_MEMORY, NULL);
+    if (status != AWT_OK) {
+        picture_release(out);
+        return status;
+    }
+    w->binding = out;
+    return AWT_OK;
+}
+
+/* What is wanted of the forest as it stands. What fails is missing, and the first failure stands in draw_error. */
+static void draw(forest_work *w, int64_t begun_us)
+{
+    int64_t drawn_us = clock_monotonic_us();
+    w->drawn = begin_picture(w, begun_us);
+    if (w->drawn) {
+        w->draw_error.status = drawing_draw(w->draws, w->forest, w->sequence, &w->wanted, w->drawn, &w->draw_error);
+    } else {
+        w->draw_error.status = error_set(&w->draw_error, AWT_NO_MEMORY, NULL);
+    }
+    if (w->wants_binding) {
+        awt_error error = {0};
+        awt_status status = draw_binding(w, &error);
+        if (status != AWT_OK && w->draw_error.status == AWT_OK) {
+            w->draw_error = error;
+            w->draw_error.status = status;
+        }
+    }
+    w->encode_us = clock_between_us(drawn_us, clock_monotonic_us());
 }
 
 /* ---- the job --------------------------------------------------------------------------------------------------- */
@@ -190,33 +214,20 @@ void forest_work_run(job *work)
 {
     forest_work *w = (forest_work *)(void *)((unsigned char *)work - offsetof(forest_work, job));
     int64_t begun_us = clock_monotonic_us();
-    int64_t to_us = 0;
     awt_status status = AWT_OK;
-    w->error = (awt_error){0};
-    w->encode_us = 0;
+    w->error = w->draw_error = (awt_error){0};
+    w->steps = w->step_us = w->encode_us = 0;
+    w->stepped = false;
     if (w->making) {
         status = make_hair(w, &w->error);
-        to_us = w->making->start.time_us;
-    } else {
-        to_us = take_inputs(w)->as.query_us;
     }
-    /* A new forest is brought to where it stands: no step, but its active nodes are counted. */
-    int64_t made_us = clock_monotonic_us();
-    awt_step_stats step = {0};
-    if (status == AWT_OK) {
-        status = awt_forest_advance(w->forest, to_us, &step, &w->error);
+    if (status == AWT_OK && (w->making || w->inputs)) {
+        status = advance(w, &w->error);
     }
-    int64_t stepped_us = clock_monotonic_us();
-    w->steps = step.steps;
-    w->step_us = clock_between_us(made_us, stepped_us);
-    if (status == AWT_OK) {
-        status = publish(w, &step, stepped_us, &w->error);
-    }
-    if (status == AWT_OK) {
-        w->frame->frame.queue_us = clock_between_us(w->submitted_us, begun_us);
-        w->frame->frame.step_us = (uint32_t)w->step_us;
-    } else {
-        w->error.status = status;
+    w->error.status = status;
+    /* A step that failed left the state as it was: whoever only looks is answered all the same. */
+    if (status == AWT_OK || (!w->making && w->looks)) {
+        draw(w, begun_us);
     }
 }
 
@@ -235,21 +246,17 @@ void forest_work_fini(forest_work *w)
 {
     recipe_destroy(w->making);
     forest_inputs_free(w->inputs);
-    published_release(w->frame);
+    forest_inputs_free(w->looks);
+    picture_release(w->spare);
+    picture_release(w->drawn);
+    picture_release(w->binding);
+    drawing_destroy(w->draws);
     awt_forest_destroy(w->forest);
-    geom_scratch_destroy(w->scratch);
-    geom_layout_destroy(w->layout);
     awt_groom_destroy(w->groom);
-    free(w->centres);
-    free(w->frames);
-    free(w->strand_scratch);
-    free(w->points);
     *w = (forest_work){0};
 }
 
 uint64_t forest_work_bytes(const forest_work *w)
 {
-    uint64_t points = (uint64_t)w->info.strand_count * w->info.points_per_strand;
-    uint64_t floats = points * 3 + (uint64_t)w->info.finest_nodes * 7;
-    return w->info.bytes + (w->forest ? awt_forest_bytes(w->forest) : 0) + floats * sizeof(float);
+    return w->info.bytes + (w->forest ? awt_forest_bytes(w->forest) : 0) + (w->draws ? drawing_bytes(w->draws) : 0);
 }

@@ -1,5 +1,5 @@
-/* forest_work.h: what a worker does with a forest: make it (CREATE) or bring it to a time (QUERY), and publish the
- * frame.
+/* forest_work.h: what a worker does with a forest: make it (CREATE), bring it to a time (QUERY) or look at it as it
+ * stands, and draw what is wanted of it.
  *
  * A forest_work is wholly the worker's from worker_pool_submit until the I/O thread takes the job back, and wholly the
  * I/O thread's otherwise; `note` alone is both's. What comes out depends only on the recipe and on the inputs in their
@@ -7,9 +7,9 @@
 #ifndef FOREST_WORK_H
 #define FOREST_WORK_H
 
-#include "geom/encode.h"
-#include "published.h"
+#include "drawing.h"
 #include "recipe.h"
+#include "wishes.h"
 #include "worker.h"
 
 #include <stdatomic.h>
@@ -20,9 +20,16 @@ typedef struct origin {
     uint64_t request; /* the message's id */
 } origin;
 
-typedef enum forest_input_kind { FOREST_MOTION, FOREST_PARAMS, FOREST_QUERY } forest_input_kind;
+/* The first three act on the forest, in their order. The others look at it as it stands, whenever that is. */
+typedef enum forest_input_kind {
+    FOREST_MOTION,
+    FOREST_PARAMS,
+    FOREST_QUERY,
+    FOREST_LATEST, /* QUERY of the latest frame */
+    FOREST_BINDING
+} forest_input_kind;
 
-/* One message that acts on a forest, waiting for its turn. */
+/* One message about a forest, waiting for its turn. */
 typedef struct forest_input {
     struct forest_input *next;
     forest_input_kind kind;
@@ -32,7 +39,10 @@ typedef struct forest_input {
     union {
         awt_motion motion;
         awt_params params;
-        int64_t query_us; /* simulated time */
+        struct {
+            int64_t time_us; /* simulated; of FOREST_QUERY */
+            int form;
+        } query; /* of FOREST_LATEST too */
     } as;
 } forest_input;
 
@@ -47,31 +57,36 @@ typedef struct forest_work {
     atomic_uint note; /* while it is made: how far it has come, see forest_work_stage; written by the worker */
 
     /* the task; the I/O thread fills it in before submitting */
-    recipe *making;       /* CREATE; NULL: QUERY */
-    forest_input *inputs; /* motions and parameters, and at the end the query that wants them; owned */
+    recipe *making;       /* CREATE; NULL: the forest is made */
+    forest_input *inputs; /* motions and parameters, and at the end the query that wants them; owned. NULL: no step */
+    forest_input *looks;  /* who wants to see what there is then; owned */
+    wishes wanted;
+    bool wants_binding;
     uint64_t handle;      /* for FRAME */
-    uint64_t sequence;    /* for FRAME */
+    uint64_t sequence;    /* of the forest's present state; a step makes the next one */
     int64_t submitted_us; /* monotonic clock: when the request came */
+    picture *spare;       /* a reference: to be drawn into; NULL: a new one is made */
 
     /* the result; the I/O thread takes it */
-    published *frame; /* a reference; NULL: failed */
-    awt_error error;  /* why, where `frame` is NULL */
+    bool stepped;         /* the forest was made or advanced */
+    picture *drawn;       /* a reference; NULL: nothing was to be drawn, or `error` says why */
+    picture *binding;     /* a reference, with the one view PICTURE_BINDING */
+    awt_error error;      /* why the step failed, where it did */
+    awt_error draw_error; /* why a view, or the binding, is missing */
     uint32_t build_us, skipped_strands;
     awt_rebuilt rebuilt;
     uint64_t steps, step_us, encode_us;
 
     /* the hair, NULL until made */
     awt_groom *groom;
-    geom_layout *layout;
-    geom_scratch *scratch;
     awt_forest *forest;
     awt_groom_info info;
-    float *centres, *frames; /* [finest_nodes][3], [finest_nodes][4] */
-    float *strand_scratch;
-    float *points; /* [strand_count][points_per_strand][3] */
+    drawing *draws;
+    struct proto_frame figures; /* of the last step */
+    int64_t stepped_us;         /* monotonic clock at its end */
 } forest_work;
 
-/* The job's function: what `making` or `inputs` say. */
+/* The job's function: what the task says. */
 void forest_work_run(job *work);
 
 /* What the worker is at, and the share of that which is done. Any thread. */

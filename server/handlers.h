@@ -20,7 +20,7 @@ session_handler session_create, session_attach_forest, session_detach_forest, se
 session_handler session_motion, session_set_params;
 
 /* session_frames.c: what comes out of a forest */
-session_handler session_query, session_subscribe, session_unsubscribe, session_credit;
+session_handler session_query, session_binding, session_subscribe, session_unsubscribe, session_credit;
 
 /* session_info.c: about the daemon */
 session_handler session_list_styles, session_stats;

@@ -26,6 +26,11 @@ enum {
     LIMIT_FOREST_INPUTS = 256, /* motions and changes of parameters */
     LIMIT_FOREST_QUERIES = 64,
 
+    /* what is drawn of one step of a forest */
+    LIMIT_DELTA_BASES = 8,    /* frames of a form that deltas can be made against, and frames that a receiver keeps */
+    LIMIT_PICTURE_VIEWS = 16, /* forms and deltas drawn by one job */
+    LIMIT_PICTURES_SPARE = 4, /* pictures kept to be drawn into again */
+
     /* one connection's buffers */
     LIMIT_INPUT_OPEN = 16 * 1024,  /* bytes of buffer once the client is in */
     LIMIT_INPUT_KEPT = 64 * 1024,  /* bytes of buffer kept between messages; more is given back */

@@ -10,7 +10,8 @@ enum { OUTPUT_FRAME_HEAD = 256 }; /* more than the FRAME's fields before its GLB
 
 struct output_segment {
     output_segment *next;
-    published *frame; /* NULL: a message, whole in `bytes` */
+    picture *shown; /* NULL: a message, whole in `bytes` */
+    const view *v;  /* of `shown` */
     uint64_t request;
     uint32_t skipped;
     size_t size; /* of `bytes`; of a frame that has not begun: 0 */
@@ -19,7 +20,7 @@ struct output_segment {
 
 static size_t segment_blob(const output_segment *segment)
 {
-    return segment->frame ? segment->frame->glb.size : 0;
+    return segment->shown ? segment->v->glb.size : 0;
 }
 
 static void append(output *out, output_segment *segment)
@@ -38,7 +39,7 @@ static void remove_first(output *out)
     out->sent = 0;
     out->first = segment->next;
     out->last = out->first ? out->last : NULL;
-    published_release(segment->frame);
+    picture_release(segment->shown);
     free(segment);
 }
 
@@ -70,14 +71,14 @@ bool output_add_message(output *out, const proto_message *message)
     return true;
 }
 
-bool output_add_frame(output *out, published *frame, uint64_t request, uint32_t skipped)
+bool output_add_picture(output *out, picture *shown, const view *v, uint64_t request, uint32_t skipped)
 {
     output_segment *segment = malloc(sizeof *segment + OUTPUT_FRAME_HEAD);
     if (!segment) {
-        published_release(frame);
+        picture_release(shown);
         return false;
     }
-    *segment = (output_segment){.frame = frame, .request = request, .skipped = skipped};
+    *segment = (output_segment){.shown = shown, .v = v, .request = request, .skipped = skipped};
     append(out, segment);
     return true;
 }
@@ -85,11 +86,13 @@ bool output_add_frame(output *out, published *frame, uint64_t request, uint32_t 
 /* The fields of the frame that goes out now. */
 static void begin_frame(output *out, output_segment *segment, int64_t now_us)
 {
-    proto_message message = {.type = PROTO_FRAME, .request = segment->request};
-    message.as.frame = segment->frame->frame;
-    message.as.frame.age_us = clock_between_us(segment->frame->stepped_us, now_us);
-    message.as.frame.skipped = segment->skipped;
-    message.as.frame.last_write_us = out->last_write_us;
+    proto_message message = {.request = segment->request};
+    picture_message(segment->shown, segment->v, &message);
+    if (message.type == PROTO_FRAME) {
+        message.as.frame.age_us = clock_between_us(segment->shown->stepped_us, now_us);
+        message.as.frame.skipped = segment->skipped;
+        message.as.frame.last_write_us = out->last_write_us;
+    }
     segment->size = proto_encode_head(&message, segment->bytes, OUTPUT_FRAME_HEAD);
     ASSERT(segment->size > 0);
     out->bytes += segment->size;
@@ -111,15 +114,15 @@ static void gather(struct iovec *pieces, size_t *count, unsigned char *bytes, si
 static size_t gather_segments(output *out, struct iovec pieces[LIMIT_OUTPUT_GATHER], int64_t now_us)
 {
     size_t count = 0, skip = out->sent;
-    if (out->first->frame) {
+    if (out->first->shown) {
         if (out->first->size == 0) {
             begin_frame(out, out->first, now_us);
         }
         gather(pieces, &count, out->first->bytes, out->first->size, &skip);
-        gather(pieces, &count, out->first->frame->glb.bytes, out->first->frame->glb.size, &skip);
+        gather(pieces, &count, out->first->v->glb.bytes, out->first->v->glb.size, &skip);
         return count;
     }
-    for (output_segment *s = out->first; s && !s->frame && count < LIMIT_OUTPUT_GATHER; s = s->next) {
+    for (output_segment *s = out->first; s && !s->shown && count < LIMIT_OUTPUT_GATHER; s = s->next) {
         gather(pieces, &count, s->bytes, s->size, &skip);
     }
     return count;
@@ -131,7 +134,7 @@ static void take_sent(output *out, size_t sent, int64_t now_us)
     out->sent += sent;
     while (out->first && out->first->size > 0 && out->sent >= out->first->size + segment_blob(out->first)) {
         size_t rest = out->sent - out->first->size - segment_blob(out->first);
-        if (out->first->frame) {
+        if (out->first->shown && out->first->v->name.form != PICTURE_BINDING) {
             uint32_t took_us = clock_between_us(out->begun_us, now_us);
             out->last_write_us = took_us ? took_us : 1; /* 0 says that there was none */
             out->frames_sent++;

@@ -6,7 +6,7 @@
 #define OUTPUT_H
 
 #include "net.h"
-#include "published.h"
+#include "picture.h"
 
 typedef struct output_segment output_segment;
 
@@ -26,8 +26,8 @@ void output_discard(output *out);
 
 /* False: no memory. */
 bool output_add_message(output *out, const proto_message *message);
-/* Takes the reference. False: no memory. */
-bool output_add_frame(output *out, published *frame, uint64_t request, uint32_t skipped);
+/* A view of a picture; takes the reference. False: no memory. */
+bool output_add_picture(output *out, picture *shown, const view *v, uint64_t request, uint32_t skipped);
 
 /* Sends until all is sent (NET_DONE), the socket takes no more (NET_LATER), `most` bytes went out (NET_DONE, and not
  * empty), or the connection is broken (NET_FAILED). */

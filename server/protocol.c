@@ -27,6 +27,7 @@ static const struct rule {
     {PROTO_MOTION, IN_OPEN, session_motion},
     {PROTO_SET_PARAMS, IN_OPEN, session_set_params},
     {PROTO_QUERY, IN_OPEN, session_query},
+    {PROTO_BINDING, IN_OPEN, session_binding},
     {PROTO_SUBSCRIBE, IN_OPEN, session_subscribe},
     {PROTO_UNSUBSCRIBE, IN_OPEN, session_unsubscribe},
     {PROTO_CREDIT, IN_OPEN, session_credit},

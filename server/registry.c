@@ -9,9 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool registry_init(registry *reg, uint32_t greatest, worker_pool *pool)
+bool registry_init(registry *reg, uint32_t greatest, worker_pool *pool,
+                   void (*wish)(const resident *r, bool steps, wishes *out))
 {
-    *reg = (registry){.greatest = greatest, .pool = pool};
+    *reg = (registry){.greatest = greatest, .pool = pool, .wish = wish};
     return handle_table_init(&reg->handles, greatest);
 }
 
@@ -23,7 +24,12 @@ static void resident_free(registry *reg, resident *r)
     reg->alive--;
     reg->telling -= r->tells;
     forest_inputs_free(r->waiting);
-    published_release(r->latest);
+    forest_inputs_free(r->looks);
+    picture_release(r->latest);
+    picture_release(r->binding);
+    for (int i = 0; i < LIMIT_PICTURES_SPARE; i++) {
+        picture_release(r->spare[i]);
+    }
     forest_work_fini(&r->work);
     free(r);
 }
@@ -59,12 +65,26 @@ static resident *resident_create(registry *reg)
     return r;
 }
 
+/* A picture that only the resident still has; NULL: none. */
+static picture *take_spare(resident *r)
+{
+    for (int i = 0; i < LIMIT_PICTURES_SPARE; i++) {
+        picture *p = r->spare[i];
+        if (p && picture_renew(p)) {
+            r->spare[i] = NULL;
+            return p;
+        }
+    }
+    return NULL;
+}
+
 static void submit(registry *reg, resident *r)
 {
     r->busy = true;
     r->work.job.run = forest_work_run;
     r->work.handle = r->handle;
-    r->work.sequence = r->sequence + 1;
+    r->work.sequence = r->sequence;
+    r->work.spare = take_spare(r);
     worker_pool_submit(reg->pool, &r->work.job);
 }
 
@@ -107,22 +127,20 @@ forest_input *registry_destroy(registry *reg, resident *r)
     handle_remove(&reg->handles, r->handle);
     r->handle = 0;
     r->doomed = true;
+    *r->waiting_end = r->looks;
     forest_input *waiting = r->waiting;
-    r->waiting = NULL;
+    r->waiting = r->looks = NULL;
     r->waiting_end = &r->waiting;
-    r->waiting_inputs = r->waiting_queries = 0;
+    r->waiting_inputs = r->waiting_queries = r->waiting_looks = 0;
     if (!r->busy) {
         resident_free(reg, r);
     }
     return waiting;
 }
 
-/* Everything up to the first query becomes a job, if no worker has the forest already. */
-static void start_next(registry *reg, resident *r)
+/* Everything up to the first query becomes the job's. */
+static void take_step(resident *r)
 {
-    if (r->busy || r->waiting_queries == 0) {
-        return;
-    }
     r->work.inputs = r->waiting;
     forest_input *query = r->waiting;
     for (; query->kind != FOREST_QUERY; query = query->next) {
@@ -133,11 +151,60 @@ static void start_next(registry *reg, resident *r)
     r->waiting_end = r->waiting ? r->waiting_end : &r->waiting;
     query->next = NULL;
     r->work.submitted_us = query->arrived_us;
+    wishes_add(&r->work.wanted, (view_name){.form = query->as.query.form});
+}
+
+/* So do all who want to see the forest. */
+static void take_looks(resident *r)
+{
+    r->work.looks = r->looks;
+    for (const forest_input *look = r->looks; look; look = look->next) {
+        if (look->kind == FOREST_BINDING) {
+            r->work.wants_binding = !r->binding;
+        } else {
+            wishes_add(&r->work.wanted, (view_name){.form = look->as.query.form});
+        }
+        r->work.submitted_us = r->work.inputs ? r->work.submitted_us : look->arrived_us;
+    }
+    r->looks = NULL;
+    r->waiting_looks = 0;
+}
+
+/* What waits becomes a job, if no worker has the forest already. */
+static void start_next(registry *reg, resident *r)
+{
+    const bool steps = r->waiting_queries > 0;
+    if (r->busy || !(steps || r->looks || r->redraw)) {
+        return;
+    }
+    r->work.wanted = (wishes){0};
+    r->work.wants_binding = false;
+    if (steps) {
+        take_step(r);
+    }
+    take_looks(r);
+    reg->wish(r, steps, &r->work.wanted);
+    r->redraw = false;
     submit(reg, r);
+}
+
+static bool push_look(registry *reg, resident *r, forest_input *look)
+{
+    if (r->waiting_looks >= LIMIT_FOREST_QUERIES) {
+        return false;
+    }
+    r->waiting_looks++;
+    look->next = r->looks;
+    r->looks = look;
+    start_next(reg, r);
+    return true;
 }
 
 bool registry_push(registry *reg, resident *r, forest_input *input)
 {
+    if (input->kind > FOREST_QUERY) {
+        return push_look(reg, r, input);
+    }
     bool query = input->kind == FOREST_QUERY;
     if (query ? r->waiting_queries >= LIMIT_FOREST_QUERIES : r->waiting_inputs >= LIMIT_FOREST_INPUTS) {
         return false;
@@ -150,12 +217,48 @@ bool registry_push(registry *reg, resident *r, forest_input *input)
     return true;
 }
 
+void registry_redraw(registry *reg, resident *r, int64_t now_us)
+{
+    r->redraw = true;
+    if (!r->busy) {
+        r->work.submitted_us = now_us;
+    }
+    start_next(reg, r);
+}
+
+static void keep_spare(resident *r, picture *p)
+{
+    for (int i = 0; i < LIMIT_PICTURES_SPARE; i++) {
+        if (!r->spare[i]) {
+            r->spare[i] = p;
+            return;
+        }
+    }
+    picture_release(r->spare[0]); /* someone has had it for long */
+    r->spare[0] = p;
+}
+
+void registry_publish(resident *r, picture *drawn)
+{
+    picture *before = r->latest;
+    r->latest = drawn;
+    r->sequence = drawn->figures.sequence;
+    if (before && before->figures.sequence == r->sequence) {
+        drawn->earlier = before;
+    } else if (before) {
+        keep_spare(r, before);
+    }
+}
+
 resident *registry_take_back(job *done)
 {
     size_t offset = offsetof(resident, work) + offsetof(forest_work, job);
     resident *r = (resident *)(void *)((unsigned char *)done - offset);
     ASSERT(r->busy);
     r->bytes = forest_work_bytes(&r->work);
+    for (int i = 0; i < FORM_COUNT && r->work.draws; i++) {
+        r->form_bytes[i] = drawing_form_bytes(r->work.draws, i);
+    }
     return r;
 }
 

@@ -3,7 +3,8 @@
  * A resident belongs to the I/O thread, except its `work`, which belongs to a worker while `busy`. Messages that act on
  * it wait in `waiting`, in order, whoever sent them; when it is idle, everything up to and including the first QUERY
  * becomes one job. So a QUERY sees exactly the motions and parameters that came before it, and the result does not
- * depend on how many workers there are. */
+ * depend on how many workers there are. Whoever only wants to see the forest as it stands is answered by the next job,
+ * whether it steps or not. A job draws what the forest's subscriptions and those it answers want, and nothing else. */
 #ifndef REGISTRY_H
 #define REGISTRY_H
 
@@ -28,6 +29,9 @@ typedef struct resident {
 
     forest_input *waiting, **waiting_end;
     uint32_t waiting_inputs, waiting_queries;
+    forest_input *looks; /* FOREST_LATEST and FOREST_BINDING that wait, the latest first */
+    uint32_t waiting_looks;
+    bool redraw; /* a subscription wants a view that the latest picture lacks */
 
     /* what MOTION and SET_PARAMS are checked against: as the forest will be once `waiting` is done */
     bool moved;
@@ -35,12 +39,15 @@ typedef struct resident {
     int64_t motion_us;
     awt_params params;
 
-    uint64_t sequence; /* of the latest frame */
-    published *latest; /* ribbon, full; a reference */
+    uint64_t sequence;                    /* of the latest picture */
+    picture *latest;                      /* a reference */
+    picture *binding;                     /* a reference; NULL: nobody has asked for it */
+    picture *spare[LIMIT_PICTURES_SPARE]; /* references: earlier pictures, to be drawn into when nobody else has them */
     struct subscription *subscriptions;
     uint32_t subscription_count;
     awt_groom_info info;
-    uint64_t bytes; /* that it holds, when it was last idle */
+    uint64_t bytes;                  /* that it holds, when it was last idle */
+    uint64_t form_bytes[FORM_COUNT]; /* of these, what each form takes; it never grows less */
 
     forest_work work;
 } resident;
@@ -52,10 +59,13 @@ typedef struct registry {
     uint32_t greatest;
     uint32_t telling; /* residents that tell */
     worker_pool *pool;
+    void (*wish)(const resident *r, bool steps, wishes *out); /* adds what the subscriptions want of the next picture */
 } registry;
 
-/* Room for `greatest` forests. The pool must outlive every call but registry_fini. False: no memory. */
-bool registry_init(registry *reg, uint32_t greatest, worker_pool *pool);
+/* Room for `greatest` forests. The pool must outlive every call but registry_fini. `wish` tells what subscriptions want
+ * of a job: of its step, or of the present state where it `steps` not. False: no memory. */
+bool registry_init(registry *reg, uint32_t greatest, worker_pool *pool,
+                   void (*wish)(const resident *r, bool steps, wishes *out));
 /* Frees every resident. After the pool's threads have ended. Accepts a zeroed one. */
 void registry_fini(registry *reg);
 
@@ -72,6 +82,12 @@ forest_input *registry_destroy(registry *reg, resident *r);
 
 /* Queues an input (taken) behind those that wait. False: too many wait; the input is the caller's again. */
 bool registry_push(registry *reg, resident *r, forest_input *input);
+
+/* Has the present state drawn again, for a subscription that lacks its view. */
+void registry_redraw(registry *reg, resident *r, int64_t now_us);
+
+/* The picture that a job drew becomes the latest, or stands on it where it is of the same step. Takes the reference. */
+void registry_publish(resident *r, picture *drawn);
 
 /* The resident whose job this is, for its results; it stays busy until registry_continue. */
 resident *registry_take_back(job *done);

@@ -1,6 +1,7 @@
 /* service.c: see service.h. */
 #include "service.h"
 #include "limits.h"
+#include "subscription.h"
 
 bool service_init(service *s, const service_options *options)
 {
@@ -8,7 +9,7 @@ bool service_init(service *s, const service_options *options)
     s->uploads.greatest = LIMIT_UPLOADS_BYTES;
     s->started_us = options->clock_us();
     s->pool = worker_pool_create(options->workers, options->wake, options->wake_context);
-    if (s->pool && registry_init(&s->forests, options->max_forests, s->pool) &&
+    if (s->pool && registry_init(&s->forests, options->max_forests, s->pool, subscriptions_wish) &&
         handle_table_init(&s->sessions, options->max_sessions)) {
         return true;
     }

@@ -108,10 +108,10 @@ void session_bye(session *s, const char *reason)
     s->state = SESSION_CLOSING;
 }
 
-void session_frame(session *s, published *frame, uint64_t request)
+void session_picture(session *s, picture *shown, const view *v, uint64_t request)
 {
     if (s->state != SESSION_CLOSING) {
-        s->sink.frame(s->sink.context, published_hold(frame), request, 0);
+        s->sink.picture(s->sink.context, picture_hold(shown), v, request, 0);
     }
 }
 
@@ -207,7 +207,7 @@ bool session_push(session *s, const proto_message *message, resident *r, forest_
     if (registry_push(&s->shared->forests, r, input)) {
         return true;
     }
-    if (input->kind == FOREST_QUERY) {
+    if (input->kind >= FOREST_QUERY) {
         session_error(s, message->type, message->request, PROTO_ERROR_BUSY, "%d queries wait for this forest already",
                       LIMIT_FOREST_QUERIES);
     } else {
@@ -231,14 +231,22 @@ subscription *session_subscription(session *s, uint64_t handle)
     return NULL;
 }
 
-/* The next in turn that may send, so that no forest starves another on the same connection. */
-static subscription *next_due(session *s, int64_t now_us)
+/* The next in turn that may send, with its view, so that no forest starves another on the same connection. */
+static subscription *next_due(session *s, int64_t now_us, const view **v)
 {
     for (uint32_t n = 0; n < LIMIT_SESSION_SUBSCRIPTIONS; n++) {
         uint32_t i = (s->subscription_next + n) % LIMIT_SESSION_SUBSCRIPTIONS;
-        if (subscription_is_due(&s->subscriptions[i], now_us)) {
+        subscription *sub = &s->subscriptions[i];
+        if (!subscription_is_due(sub, now_us)) {
+            continue;
+        }
+        *v = subscription_view(sub);
+        if (*v) {
             s->subscription_next = (i + 1) % LIMIT_SESSION_SUBSCRIPTIONS;
-            return &s->subscriptions[i];
+            return sub;
+        }
+        if (subscription_asks(sub)) {
+            registry_redraw(&s->shared->forests, sub->forest, now_us);
         }
     }
     return NULL;
@@ -248,13 +256,14 @@ void session_stream(session *s)
 {
     int64_t now_us = s->shared->options.clock_us();
     while (s->state == SESSION_OPEN && s->sink.drained(s->sink.context)) {
-        subscription *sub = next_due(s, now_us);
+        const view *v = NULL;
+        subscription *sub = next_due(s, now_us, &v);
         if (!sub) {
             return;
         }
         uint32_t skipped = 0;
-        published *frame = subscription_take(sub, now_us, &skipped);
-        s->sink.frame(s->sink.context, frame, sub->request, skipped);
+        picture *shown = subscription_take(sub, v, now_us, &skipped);
+        s->sink.picture(s->sink.context, shown, v, sub->request, skipped);
     }
 }
 
@@ -263,7 +272,7 @@ int64_t session_stream_due(const session *s)
     int64_t due_us = INT64_MAX;
     for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
         const subscription *sub = &s->subscriptions[i];
-        if (sub->handle && sub->waiting && sub->credit > 0 && sub->due_us < due_us) {
+        if (sub->handle && sub->waiting && sub->credit > 0 && sub->due_us < due_us && subscription_view(sub)) {
             due_us = sub->due_us;
         }
     }

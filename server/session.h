@@ -15,8 +15,8 @@ typedef struct session_sink {
     void *context;
     /* Encodes and sends. The message's texts are good only during the call. */
     void (*message)(void *context, const proto_message *message);
-    /* Sends a FRAME; takes the reference. */
-    void (*frame)(void *context, published *frame, uint64_t request, uint32_t skipped);
+    /* Sends a FRAME, or BINDING_REPLY, of one of the picture's views; takes the reference. */
+    void (*picture)(void *context, picture *shown, const view *v, uint64_t request, uint32_t skipped);
     /* True if all that was given before is gone. */
     bool (*drained)(void *context);
 } session_sink;
@@ -80,8 +80,8 @@ void session_error_awt(session *s, uint16_t about, uint64_t request, const awt_e
 /* Sends BYE and closes. */
 void session_bye(session *s, const char *reason);
 
-/* Sends a frame as the answer of `request`; holds its own reference. */
-void session_frame(session *s, published *frame, uint64_t request);
+/* Sends a view of a picture as the answer of `request`; holds its own reference. */
+void session_picture(session *s, picture *shown, const view *v, uint64_t request);
 
 /* ---- forests of a session --------------------------------------------------------------------------------------- */
 

@@ -3,6 +3,7 @@
 #include "handlers.h"
 #include "log.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* The complete upload that a CREATE names; NULL: there is none. */
@@ -56,8 +57,8 @@ void session_attach_forest(session *s, const proto_message *message)
     }
     /* both are always compared, so that time does not tell which one was nearer */
     bool drive = auth_equal(attach->token, r->drive_token, sizeof r->drive_token);
-    bool view = auth_equal(attach->token, r->view_token, sizeof r->view_token);
-    if (!drive && !view) {
+    bool may_view = auth_equal(attach->token, r->view_token, sizeof r->view_token);
+    if (!drive && !may_view) {
         log_write(LOG_WARN, "wrong forest token", "peer=%s", s->peer);
         session_error(s, message->type, message->request, PROTO_ERROR_WRONG_TOKEN, NULL);
         return;
@@ -69,7 +70,7 @@ void session_attach_forest(session *s, const proto_message *message)
     }
     proto_message reply = {.type = PROTO_ATTACH_REPLY, .request = message->request};
     reply.as.attach_reply.may_drive = drive;
-    reply.as.attach_reply.time_us = r->latest->frame.time_us;
+    reply.as.attach_reply.time_us = r->latest->figures.time_us;
     reply.as.attach_reply.strands = r->info.strand_count;
     reply.as.attach_reply.points_per_strand = (uint16_t)r->info.points_per_strand;
     session_send(s, &reply);
@@ -94,14 +95,29 @@ static void end_subscriptions(resident *r)
 static void refuse_waiting(service *shared, forest_input *waiting)
 {
     for (const forest_input *input = waiting; input; input = input->next) {
-        session *asker = input->kind == FOREST_QUERY ? session_find(shared, input->from) : NULL;
+        session *asker = input->kind >= FOREST_QUERY ? session_find(shared, input->from) : NULL;
         if (asker) {
             asker->pending--;
-            session_error(asker, PROTO_QUERY, input->from.request, PROTO_ERROR_NO_FOREST,
-                          "the forest was destroyed before this query had its turn");
+            session_error(asker, input->kind == FOREST_BINDING ? PROTO_BINDING : PROTO_QUERY, input->from.request,
+                          PROTO_ERROR_NO_FOREST, "the forest was destroyed before this query had its turn");
         }
     }
     forest_inputs_free(waiting);
+}
+
+/* With the memory that it came to take, as a whole and by form; nothing of it is given back while it lives. */
+static void log_destroyed(const session *s, const resident *r)
+{
+    char quoted[LOG_QUOTED], forms[FORM_COUNT * 48] = "";
+    size_t used = 0;
+    for (int i = 0; i < FORM_COUNT; i++) {
+        if (r->form_bytes[i] > 0 && used < sizeof forms) {
+            used += (size_t)snprintf(forms + used, sizeof forms - used, " %s=%llu", form_name(i),
+                                     (unsigned long long)r->form_bytes[i]);
+        }
+    }
+    log_write(LOG_INFO, "forest destroyed", "peer=%s name=%s bytes=%llu%s", s->peer,
+              log_quote(r->name, strlen(r->name), quoted), (unsigned long long)r->bytes, forms);
 }
 
 void session_destroy(session *s, const proto_message *message)
@@ -110,8 +126,7 @@ void session_destroy(session *s, const proto_message *message)
     if (!r) {
         return;
     }
-    char quoted[LOG_QUOTED];
-    log_write(LOG_INFO, "forest destroyed", "peer=%s name=%s", s->peer, log_quote(r->name, strlen(r->name), quoted));
+    log_destroyed(s, r);
     end_subscriptions(r);
     session_detach(s, r->handle);
     refuse_waiting(s->shared, registry_destroy(&s->shared->forests, r));
@@ -122,10 +137,10 @@ static struct proto_forest_info forest_line(const resident *r)
 {
     return (struct proto_forest_info){.forest = r->handle,
                                       .name = proto_str_of(r->name),
-                                      .time_us = r->latest->frame.time_us,
+                                      .time_us = r->latest->figures.time_us,
                                       .strands = r->info.strand_count,
                                       .finest_nodes = r->info.finest_nodes,
-                                      .active_nodes = r->latest->frame.active_nodes,
+                                      .active_nodes = r->latest->figures.active_nodes,
                                       .subscribers = r->subscription_count};
 }
 

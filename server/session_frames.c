@@ -1,37 +1,28 @@
-/* session_frames.c: QUERY, SUBSCRIBE, UNSUBSCRIBE, CREDIT: what comes out of a forest. (A QUERY that advances is
- * answered in completions.c, when a worker has done it.) */
+/* session_frames.c: QUERY, BINDING, SUBSCRIBE, UNSUBSCRIBE, CREDIT: what comes out of a forest. (What a worker has to
+ * do first is answered in completions.c.) */
 #include "handlers.h"
 
-enum {
-    KIND_RIBBON = 0,
-    KIND_GREATEST = 3, /* ribbon, strands, guides, nodes */
-    LEVEL_FULL = 0,
-    LEVEL_GREATEST = 2 /* full, fifth, guides */
-};
-
-/* False: an ERROR was sent. */
-static bool check_kind(session *s, const proto_message *message, uint8_t kind, uint8_t level)
+/* The form asked for; FORM_NONE: an ERROR was sent. */
+static int find_form(session *s, const proto_message *message, uint8_t kind, uint8_t level)
 {
-    if (kind > KIND_GREATEST || level > LEVEL_GREATEST) {
+    if (kind > FORM_KIND_GREATEST || level > FORM_LEVEL_GREATEST) {
         session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE,
                       "kind is %u and level %u; the greatest are %d and %d", (unsigned)kind, (unsigned)level,
-                      KIND_GREATEST, LEVEL_GREATEST);
-        return false;
+                      FORM_KIND_GREATEST, FORM_LEVEL_GREATEST);
+        return FORM_NONE;
     }
-    if (kind != KIND_RIBBON || level != LEVEL_FULL) {
+    int found = form_find(kind, level);
+    if (found == FORM_NONE) {
         session_error(s, message->type, message->request, PROTO_ERROR_NOT_SUPPORTED,
-                      "this daemon makes frames of kind 0 (ribbon) and level 0 (full) only");
-        return false;
+                      "this daemon makes no frames of kind %u at level %u; level 0 (full) is there of every kind",
+                      (unsigned)kind, (unsigned)level);
     }
-    return true;
+    return found;
 }
 
-static void query_advance(session *s, const proto_message *message, resident *r)
+/* Has a worker answer. */
+static void push(session *s, const proto_message *message, resident *r, forest_input *input)
 {
-    forest_input *input = session_input(s, message, FOREST_QUERY);
-    if (input) {
-        input->as.query_us = message->as.query.time_us;
-    }
     if (session_push(s, message, r, input)) {
         s->pending++;
     }
@@ -41,13 +32,34 @@ void session_query(session *s, const proto_message *message)
 {
     const struct proto_query *query = &message->as.query;
     resident *r = session_resident(s, message, query->forest, !query->latest);
-    if (!r || !check_kind(s, message, query->kind, query->level)) {
+    int form = r ? find_form(s, message, query->kind, query->level) : FORM_NONE;
+    if (form == FORM_NONE) {
         return;
     }
-    if (query->latest) {
-        session_frame(s, r->latest, message->request);
+    const view *v = query->latest ? picture_view(r->latest, (view_name){.form = form}) : NULL;
+    if (v) {
+        session_picture(s, r->latest, v, message->request);
+        return;
+    }
+    forest_input *input = session_input(s, message, query->latest ? FOREST_LATEST : FOREST_QUERY);
+    if (input) {
+        input->as.query.time_us = query->time_us;
+        input->as.query.form = form;
+    }
+    push(s, message, r, input);
+}
+
+void session_binding(session *s, const proto_message *message)
+{
+    const struct proto_binding *binding = &message->as.binding;
+    resident *r = session_resident(s, message, binding->forest, false);
+    if (!r || find_form(s, message, GEOM_GUIDES, binding->level) == FORM_NONE) {
+        return;
+    }
+    if (r->binding) {
+        session_picture(s, r->binding, &r->binding->views[0], message->request);
     } else {
-        query_advance(s, message, r);
+        push(s, message, r, session_input(s, message, FOREST_BINDING));
     }
 }
 
@@ -55,7 +67,13 @@ void session_subscribe(session *s, const proto_message *message)
 {
     const struct proto_subscribe *subscribe = &message->as.subscribe;
     resident *r = session_resident(s, message, subscribe->forest, false);
-    if (!r || !check_kind(s, message, subscribe->kind, subscribe->level)) {
+    int form = r ? find_form(s, message, subscribe->kind, subscribe->level) : FORM_NONE;
+    if (form == FORM_NONE) {
+        return;
+    }
+    if (subscribe->deltas > 1) {
+        session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE, "deltas is %u; it is 0 or 1",
+                      (unsigned)subscribe->deltas);
         return;
     }
     subscription *place = NULL;
@@ -67,8 +85,13 @@ void session_subscribe(session *s, const proto_message *message)
                       "a connection has %d subscriptions at most", LIMIT_SESSION_SUBSCRIPTIONS);
         return;
     }
-    subscription_begin(place, s, r, ++s->subscription_serial, message->request, subscribe->credit,
-                       subscribe->greatest_rate);
+    const subscription_def def = {.handle = ++s->subscription_serial,
+                                  .request = message->request,
+                                  .credit = subscribe->credit,
+                                  .greatest_rate = subscribe->greatest_rate,
+                                  .form = form,
+                                  .deltas = subscribe->deltas};
+    subscription_begin(place, s, r, &def);
     proto_message reply = {.type = PROTO_SUBSCRIBE_REPLY, .request = message->request};
     reply.as.subscribe_reply.subscription = place->handle;
     session_send(s, &reply);
@@ -95,8 +118,14 @@ void session_unsubscribe(session *s, const proto_message *message)
 void session_credit(session *s, const proto_message *message)
 {
     subscription *sub = find(s, message, message->as.credit.subscription);
-    if (sub) {
-        subscription_credit(sub, message->as.credit.frames);
-        session_stream(s);
+    if (!sub) {
+        return;
     }
+    if (sub->deltas && !bases_acknowledge(&sub->bases, message->as.credit.have)) {
+        session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE,
+                      "frame %llu was never sent on this subscription", (unsigned long long)message->as.credit.have);
+        return;
+    }
+    subscription_credit(sub, message->as.credit.frames);
+    session_stream(s);
 }

@@ -231,7 +231,7 @@ TEST(e2e_a_subscriber_gets_the_frames_its_credit_allows_and_counts_the_rest)
             message = (proto_message){.type = PROTO_CREDIT};
             message.as.credit.subscription = subscription;
             message.as.credit.frames = 1;
-            message.as.credit.acknowledged = last;
+            message.as.credit.have = last;
             CHECK(awtclient_send(viewer, &message, &error));
         }
         proto_message frame;

@@ -26,7 +26,7 @@ bool fake_service_init(service *shared, unsigned workers, uint32_t max_forests, 
 {
     service_options options = {.workers = workers,
                                .max_forests = max_forests,
-                               .max_sessions = 8,
+                               .max_sessions = FAKE_SESSIONS,
                                .auth_required = auth_required,
                                .clock_us = fake_clock_us,
                                .wake = fake_wake};
@@ -58,13 +58,15 @@ static void sink_message(void *context, const proto_message *message)
     keep(context, message);
 }
 
-static void sink_frame(void *context, published *frame, uint64_t request, uint32_t skipped)
+static void sink_picture(void *context, picture *shown, const view *v, uint64_t request, uint32_t skipped)
 {
-    proto_message message = {.type = PROTO_FRAME, .request = request};
-    message.as.frame = frame->frame;
-    message.as.frame.skipped = skipped;
+    proto_message message = {.request = request};
+    picture_message(shown, v, &message);
+    if (message.type == PROTO_FRAME) {
+        message.as.frame.skipped = skipped;
+    }
     keep(context, &message);
-    published_release(frame);
+    picture_release(shown);
 }
 
 static bool sink_drained(void *context)
@@ -77,7 +79,7 @@ static bool sink_drained(void *context)
 fake_client *fake_client_create(service *shared)
 {
     fake_client *client = calloc(1, sizeof *client);
-    session_sink sink = {client, sink_message, sink_frame, sink_drained};
+    session_sink sink = {client, sink_message, sink_picture, sink_drained};
     CHECK(client && session_init(&client->talk, shared, &sink, "test"));
     return client;
 }

@@ -5,7 +5,7 @@
 
 #include "session.h"
 
-enum { FAKE_RECEIVED = 512 };
+enum { FAKE_RECEIVED = 512, FAKE_SESSIONS = 128 /* that the service takes */ };
 
 /* One message that a session sent; its texts and blobs point into `bytes`. */
 typedef struct fake_received {

@@ -46,6 +46,7 @@ TEST(server_forest_is_made_moved_and_drawn)
     proto_message latest = fake_query(made.forest, 0);
     latest.as.query.latest = 1;
     send(client, latest);
+    fake_work(&shared, client);
     CHECK_U64(fake_expect(client, PROTO_FRAME)->as.frame.sequence, 1); /* at rest, without any QUERY before */
 
     send(client, fake_motion(made.forest, 1, 16667));
@@ -96,7 +97,7 @@ TEST(server_create_takes_what_it_was_told)
     CHECK_INT(made->finest_wisps, 40);
     const resident *r = registry_find(&shared.forests, made->forest);
     CHECK_TEXT(r ? r->name : NULL, "short"); /* it was given none */
-    CHECK_INT(r ? r->latest->frame.time_us : 0, 5000000);
+    CHECK_INT(r ? r->latest->figures.time_us : 0, 5000000);
     CHECK(r && awt_forest_head(r->work.forest).position[1] == 1.7);
     CHECK(r && awt_forest_params(r->work.forest).drag == 3);
     send_bad(client, fake_motion(made->forest, 1, 5000000), PROTO_ERROR_BAD_TIME);
@@ -172,6 +173,7 @@ TEST(server_forest_opens_with_its_tokens_alone)
     send(viewer, attach(made.forest, made.view_token));
     CHECK_INT(fake_expect(viewer, PROTO_ATTACH_REPLY)->as.attach_reply.may_drive, 0);
     send(viewer, latest);
+    fake_work(&shared, viewer);
     fake_expect(viewer, PROTO_FRAME);
     send_bad(viewer, fake_motion(made.forest, 1, 1000), PROTO_ERROR_NOT_ALLOWED);
     send_bad(viewer, fake_query(made.forest, 1000), PROTO_ERROR_NOT_ALLOWED);

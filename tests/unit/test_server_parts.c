@@ -127,20 +127,20 @@ static int64_t test_clock_us(void)
     return now_us += 10;
 }
 
-/* A frame with a GLB of `size` bytes. */
-static published *make_frame(size_t size)
+/* A picture with one view, a GLB of `size` bytes. */
+static picture *make_picture(size_t size)
 {
-    published *frame = published_create();
-    CHECK(frame != NULL);
-    frame->glb.bytes = malloc(size);
-    CHECK(frame->glb.bytes != NULL);
-    frame->glb.size = frame->glb.capacity = size;
+    picture *p = picture_create();
+    CHECK(p != NULL);
+    view *v = picture_add(p, (view_name){0});
+    v->glb.bytes = malloc(size);
+    CHECK(v->glb.bytes != NULL);
+    v->glb.size = v->glb.capacity = size;
     for (size_t i = 0; i < size; i++) {
-        frame->glb.bytes[i] = (unsigned char)(i * 7);
+        v->glb.bytes[i] = (unsigned char)(i * 7);
     }
-    frame->frame.glb = (proto_blob){frame->glb.bytes, (uint32_t)size};
-    frame->stepped_us = 900;
-    return frame;
+    p->stepped_us = 900;
+    return p;
 }
 
 /* Two ends that never block. */
@@ -167,10 +167,10 @@ TEST(server_output_sends_frames_whole_through_a_narrow_socket)
     make_pair(ends);
     output out = {0};
     proto_message ping = {.type = PROTO_PING};
-    published *frame = make_frame(GLB);
+    picture *shown = make_picture(GLB);
     CHECK(output_add_message(&out, &ping));
-    CHECK(output_add_frame(&out, published_hold(frame), 5, 2));
-    CHECK(output_add_frame(&out, published_hold(frame), 6, 0));
+    CHECK(output_add_picture(&out, picture_hold(shown), shown->views, 5, 2));
+    CHECK(output_add_picture(&out, picture_hold(shown), shown->views, 6, 0));
     CHECK(out.bytes > 2 * (size_t)GLB);
     unsigned char *bytes = malloc(CAPACITY);
     size_t used = 0;
@@ -195,11 +195,11 @@ TEST(server_output_sends_frames_whole_through_a_narrow_socket)
         CHECK_INT(message.as.frame.skipped, request == 5 ? 2 : 0);
         CHECK((message.as.frame.last_write_us > 0) == (request == 6));
         CHECK(message.as.frame.age_us > 0);
-        CHECK_BYTES(message.as.frame.glb.bytes, frame->glb.bytes, GLB);
+        CHECK_BYTES(message.as.frame.glb.bytes, shown->views[0].glb.bytes, GLB);
         at += PROTO_HEADER_SIZE + header.length;
     }
     CHECK_U64(at, used);
-    published_release(frame);
+    picture_release(shown);
     output_fini(&out);
     free(bytes);
     close(ends[0]);
@@ -212,9 +212,10 @@ TEST(server_output_to_a_peer_that_is_gone_fails_without_a_signal)
     make_pair(ends);
     close(ends[1]);
     output out = {0};
-    CHECK(output_add_frame(&out, make_frame(100), 1, 0));
+    picture *shown = make_picture(100);
+    CHECK(output_add_picture(&out, shown, shown->views, 1, 0));
     CHECK_INT(output_write(&out, ends[0], 1000, test_clock_us), NET_FAILED);
-    output_fini(&out); /* frees the frame */
+    output_fini(&out); /* frees the picture */
     close(ends[0]);
 }
 

@@ -235,14 +235,14 @@ TEST(server_takes_no_more_sessions_than_it_was_given)
 {
     service shared;
     CHECK(fake_service_init(&shared, 0, 4, false));
-    fake_client *clients[8];
-    for (size_t i = 0; i < 8; i++) {
+    fake_client *clients[FAKE_SESSIONS];
+    for (size_t i = 0; i < FAKE_SESSIONS; i++) {
         clients[i] = fake_client_open(&shared);
     }
     session one_more;
     CHECK(!session_init(&one_more, &shared, &clients[0]->talk.sink, "test"));
     session_fini(&one_more);
-    for (size_t i = 0; i < 8; i++) {
+    for (size_t i = 0; i < FAKE_SESSIONS; i++) {
         fake_client_destroy(clients[i]);
     }
     CHECK_INT(shared.counters.sessions, 0);

@@ -151,16 +151,17 @@ TEST(server_stream_ends_with_unsubscribe_detach_and_destroy)
     scene_fini(&s);
 }
 
-TEST(server_stream_refuses_kinds_it_does_not_make)
+TEST(server_stream_refuses_forms_it_does_not_make)
 {
     scene s;
     scene_init(&s);
     static const struct {
         uint8_t kind, level;
         int code;
-    } asked[] = {{1, 0, PROTO_ERROR_NOT_SUPPORTED}, {2, 0, PROTO_ERROR_NOT_SUPPORTED},
-                 {3, 0, PROTO_ERROR_NOT_SUPPORTED}, {0, 1, PROTO_ERROR_NOT_SUPPORTED},
-                 {0, 2, PROTO_ERROR_NOT_SUPPORTED}, {4, 0, PROTO_ERROR_BAD_VALUE},
+    } asked[] = {{0, 1, PROTO_ERROR_NOT_SUPPORTED},
+                 {0, 2, PROTO_ERROR_NOT_SUPPORTED},
+                 {3, 1, PROTO_ERROR_NOT_SUPPORTED},
+                 {4, 0, PROTO_ERROR_BAD_VALUE},
                  {0, 3, PROTO_ERROR_BAD_VALUE}};
     for (size_t i = 0; i < sizeof asked / sizeof asked[0]; i++) {
         proto_message message = {.type = PROTO_SUBSCRIBE};
