@@ -238,8 +238,20 @@ static void keep_spare(resident *r, picture *p)
     r->spare[0] = p;
 }
 
+static void note_sizes(resident *r, const picture *drawn)
+{
+    const uint64_t sequence = drawn->figures.sequence;
+    for (uint32_t i = 0; i < drawn->view_count; i++) {
+        const view *v = &drawn->views[i];
+        form_size *last = v->name.base ? &r->delta[v->name.form] : &r->whole[v->name.form];
+        const bool larger = last->sequence != sequence || v->glb.size > last->bytes;
+        *last = (form_size){.sequence = sequence, .bytes = larger ? v->glb.size : last->bytes};
+    }
+}
+
 void registry_publish(resident *r, picture *drawn)
 {
+    note_sizes(r, drawn);
     picture *before = r->latest;
     r->latest = drawn;
     r->sequence = drawn->figures.sequence;

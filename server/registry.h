@@ -16,6 +16,12 @@ struct subscription;
 
 enum { REGISTRY_TOKEN_SIZE = 16 };
 
+/* Bytes of the last frame of a form. */
+typedef struct form_size {
+    uint64_t sequence; /* of that frame; 0: there was none yet */
+    size_t bytes;
+} form_size;
+
 typedef struct resident {
     uint64_t handle;                  /* 0 once it is doomed */
     struct resident *next, *previous; /* in order of creation */
@@ -43,6 +49,7 @@ typedef struct resident {
     picture *latest;                      /* a reference */
     picture *binding;                     /* a reference; NULL: nobody has asked for it */
     picture *spare[LIMIT_PICTURES_SPARE]; /* references: earlier pictures, to be drawn into when nobody else has them */
+    form_size whole[FORM_COUNT], delta[FORM_COUNT]; /* delta: the largest of that frame's */
     struct subscription *subscriptions;
     uint32_t subscription_count;
     awt_groom_info info;

@@ -90,7 +90,8 @@ void session_subscribe(session *s, const proto_message *message)
                                   .credit = subscribe->credit,
                                   .greatest_rate = subscribe->greatest_rate,
                                   .form = form,
-                                  .deltas = subscribe->deltas};
+                                  .deltas = subscribe->deltas,
+                                  .budget = subscribe->budget};
     subscription_begin(place, s, r, &def);
     proto_message reply = {.type = PROTO_SUBSCRIBE_REPLY, .request = message->request};
     reply.as.subscribe_reply.subscription = place->handle;

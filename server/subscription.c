@@ -13,7 +13,8 @@ void subscription_begin(subscription *s, struct session *session, resident *fore
                         .credit = def->credit,
                         .interval_us = def->greatest_rate ? 1000000 / (int64_t)def->greatest_rate : 0,
                         .form = def->form,
-                        .deltas = def->deltas};
+                        .deltas = def->deltas,
+                        .budget = def->budget};
     forest->subscriptions = s;
     forest->subscription_count++;
 }
@@ -37,28 +38,81 @@ static bool makes_deltas(const subscription *s, int form)
     return s->deltas && form_at(form)->has_deltas;
 }
 
+/* The newest frame of that form that a delta can be made against; 0: none. */
+static uint64_t newest_base(const subscription *s, int number)
+{
+    return makes_deltas(s, number) ? bases_at(&s->bases, number, 0) : 0;
+}
+
+static void wish(const subscription *s, int number, wishes *out)
+{
+    wishes_add(out, (view_name){.form = number, .base = newest_base(s, number)});
+    out->keeps[number] = out->keeps[number] || makes_deltas(s, number);
+}
+
+static bool is_known(const resident *forest, const form_size *last)
+{
+    return last->sequence != 0 && forest->sequence - last->sequence < LIMIT_SIZE_FRAMES;
+}
+
+/* The richest form whose last frame fits, and the poorest where none does; on the way there all whose size is not known
+ * any more, to be measured. */
+static void wish_within_budget(const subscription *s, wishes *out)
+{
+    for (int i = s->form; i != FORM_NONE; i = form_at(i)->poorer) {
+        const form_size *whole = &s->forest->whole[i], *delta = &s->forest->delta[i];
+        const form_size *last = newest_base(s, i) && is_known(s->forest, delta) ? delta : whole;
+        const bool known = is_known(s->forest, last), fits = known && last->bytes <= s->budget;
+        if (!known || fits || form_at(i)->poorer == FORM_NONE) {
+            wish(s, i, out);
+        }
+        if (fits) {
+            return;
+        }
+    }
+}
+
 void subscriptions_wish(const resident *forest, bool steps, wishes *out)
 {
     for (const subscription *s = forest->subscriptions; s; s = s->next_of_forest) {
         if (!steps && (!s->waiting || subscription_view(s))) {
             continue;
         }
-        const bool deltas = makes_deltas(s, s->form);
-        wishes_add(out, (view_name){.form = s->form, .base = deltas ? bases_at(&s->bases, s->form, 0) : 0});
-        out->keeps[s->form] = out->keeps[s->form] || deltas;
+        if (s->budget > 0) {
+            wish_within_budget(s, out);
+        } else {
+            wish(s, s->form, out);
+        }
     }
 }
 
-const view *subscription_view(const subscription *s)
+/* The newest delta of a form that the receiver can use, else the whole frame; NULL: the picture has neither. */
+static const view *view_of_form(const subscription *s, int number)
 {
     uint64_t base = 0;
-    for (uint32_t n = 0; makes_deltas(s, s->form) && (base = bases_at(&s->bases, s->form, n)) != 0; n++) {
-        const view *v = picture_view(s->waiting, (view_name){.form = s->form, .base = base});
+    for (uint32_t n = 0; makes_deltas(s, number) && (base = bases_at(&s->bases, number, n)) != 0; n++) {
+        const view *v = picture_view(s->waiting, (view_name){.form = number, .base = base});
         if (v) {
             return v;
         }
     }
-    return picture_view(s->waiting, (view_name){.form = s->form});
+    return picture_view(s->waiting, (view_name){.form = number});
+}
+
+const view *subscription_view(const subscription *s)
+{
+    if (s->budget == 0) {
+        return view_of_form(s, s->form);
+    }
+    const view *least = NULL;
+    for (int i = s->form; i != FORM_NONE; i = form_at(i)->poorer) {
+        const view *v = view_of_form(s, i);
+        if (v && v->glb.size <= s->budget) {
+            return v;
+        }
+        least = v && (!least || v->glb.size < least->glb.size) ? v : least;
+    }
+    return least;
 }
 
 bool subscription_asks(subscription *s)

@@ -3,8 +3,8 @@
  * A picture waits in `waiting` until the session's output is empty, the credit is not, and the rate asked for has come
  * round again. A newer one takes its place and is counted as skipped: what a slow receiver gets is never old, and it
  * slows nobody. Which view of it is sent is decided when it goes out: the newest delta that the receiver can use, else
- * the whole frame. Where the picture has neither, the forest is asked once to draw it. A frame that has been handed to
- * the output is sent whole. */
+ * the whole frame; within a budget, the richest form that fits. Where the picture has nothing for it, the forest is
+ * asked once to draw it. A frame that has been handed to the output is sent whole. */
 #ifndef SUBSCRIPTION_H
 #define SUBSCRIPTION_H
 
@@ -21,11 +21,12 @@ typedef struct subscription {
     struct subscription *next_of_forest;
     uint32_t credit, skipped;
     int64_t interval_us, due_us; /* 0: every frame */
-    int form;
-    bool deltas;        /* frames may be deltas */
-    bases bases;        /* what the receiver has */
-    picture *waiting;   /* a reference, or NULL */
-    uint64_t asked_for; /* sequence of the last picture that it wanted drawn again; 0: none */
+    int form;                    /* asked for; within a budget the richest */
+    bool deltas;                 /* frames may be deltas */
+    uint32_t budget;             /* bytes of a frame; 0: none */
+    bases bases;                 /* what the receiver has */
+    picture *waiting;            /* a reference, or NULL */
+    uint64_t asked_for;          /* sequence of the last picture that it wanted drawn again; 0: none */
 } subscription;
 
 typedef struct subscription_def {
@@ -33,6 +34,7 @@ typedef struct subscription_def {
     uint32_t credit, greatest_rate;
     int form;
     bool deltas;
+    uint32_t budget;
 } subscription_def;
 
 /* Fills a free place. */
