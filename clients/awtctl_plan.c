@@ -11,7 +11,7 @@
 
 /* What the command line says before it is checked. */
 typedef struct play_words {
-    const char *up, *head, *motion_up, *time_unit, *kind;
+    const char *up, *head, *motion_up, *time_unit, *kind, *level;
     option_list params;
 } play_words;
 
@@ -56,15 +56,27 @@ static bool read_time_unit(const char *text, double *unit_s)
     return *unit_s > 0 || (read_number(&text, '\0', unit_s) && *unit_s > 0);
 }
 
-static bool read_kind(const char *text, uint8_t *kind)
+/* The number of the name among `count`. */
+static bool read_name(const char *text, const char *const *names, uint8_t count, uint8_t *number)
 {
-    static const char *const names[] = {"ribbon", "strands", "guides", "nodes"};
-    for (*kind = 0; *kind < sizeof names / sizeof names[0]; (*kind)++) {
-        if (strcmp(names[*kind], text) == 0) {
+    for (*number = 0; *number < count; (*number)++) {
+        if (strcmp(names[*number], text) == 0) {
             return true;
         }
     }
     return false;
+}
+
+static bool read_kind(const char *text, uint8_t *kind)
+{
+    static const char *const names[] = {"ribbon", "strands", "guides", "nodes"};
+    return read_name(text, names, sizeof names / sizeof names[0], kind);
+}
+
+static bool read_level(const char *text, uint8_t *level)
+{
+    static const char *const names[] = {"full", "fifth", "guides"};
+    return read_name(text, names, sizeof names / sizeof names[0], level);
 }
 
 static bool read_param(const char *text, play_plan *plan)
@@ -94,6 +106,9 @@ static const char *plan_words(const play_words *words, play_plan *plan, char *te
     if (!read_kind(words->kind, &plan->kind)) {
         return "--kind takes ribbon, strands, guides or nodes";
     }
+    if (!read_level(words->level, &plan->level)) {
+        return "--level takes full, fifth or guides";
+    }
     for (size_t i = 0; i < words->params.count; i++) {
         if (!read_param(words->params.items[i], plan)) {
             snprintf(text, size, "--param takes name=number, not \"%s\" (awtctl styles lists the names)",
@@ -119,6 +134,9 @@ static const char *plan_whole(const play_words *words, play_plan *plan)
     if (!plan->style && !plan->groom) {
         plan->style = "long";
     }
+    if (plan->deltas && strcmp(words->kind, "strands") != 0) {
+        return "--deltas goes with --kind strands: other kinds have none";
+    }
     if (plan->every > 0 && !plan->out) {
         return "--every is about the files that --out DIR asks for";
     }
@@ -127,7 +145,7 @@ static const char *plan_whole(const play_words *words, play_plan *plan)
 
 bool play_plan_read(int argc, char *const *argv, play_plan *plan, awtctl_exit *code)
 {
-    play_words words = {.kind = "ribbon"};
+    play_words words = {.kind = "ribbon", .level = "full"};
     *plan = (play_plan){.connection = {.address = AWTCTL_ADDRESS}, .motion = "lean", .fps = 60};
     motion_options *clip = &plan->motion_options;
     const option options[] = {
@@ -153,6 +171,9 @@ bool play_plan_read(int argc, char *const *argv, play_plan *plan, awtctl_exit *c
         {"out", OPTION_TEXT, "DIR", &plan->out, 0, 0, "folder for GLB files; without it none is written"},
         {"every", OPTION_INTEGER, "K", &plan->every, 0, 1e6, "a file every K frames; 0: about 20 files in all"},
         {"kind", OPTION_TEXT, "KIND", &words.kind, 0, 0, "geometry: ribbon, strands, guides, nodes"},
+        {"level", OPTION_TEXT, "LEVEL", &words.level, 0, 0, "share of the hair: full, fifth, guides"},
+        {"deltas", OPTION_FLAG, NULL, &plan->deltas, 0, 0,
+         "strands against the frame before; files of these are of no use alone"},
         {"check", OPTION_FLAG, NULL, &plan->check, 0, 0, "decode and measure every frame, not only those written"},
         {"json", OPTION_OPTIONAL_TEXT, "FILE", &plan->json, 0, 0, "all figures as JSON, to FILE or stdout"},
         {"quiet", OPTION_FLAG, NULL, &plan->quiet, 0, 0, "no progress and no table, only the summary"},

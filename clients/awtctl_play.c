@@ -15,15 +15,11 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum {
     PLAY_TIMEOUT_MS = 120000, /* building a large groom takes a while */
     PLAY_MAX_FRAMES = 1000000,
-    PLAY_FILES = 20,
-    PLAY_BUSY_TRIES = 100,
-    PLAY_BUSY_LEAST_MS = 20,
-    PLAY_BUSY_MOST_MS = 2000
+    PLAY_FILES = 20
 };
 
 typedef struct play {
@@ -31,6 +27,7 @@ typedef struct play {
     play_record record;
     motion motion;
     awtclient *client;
+    play_stream stream;
     FILE *text; /* the human side of the output: not where JSON goes */
     size_t frame_count, every;
     bool created; /* the forest is there */
@@ -108,39 +105,13 @@ static bool play_prepare(play *p)
     p->client = awtctl_connect(&p->plan.connection, PLAY_TIMEOUT_MS);
     motion_sample start = motion_at(&p->motion, 0);
     p->created = p->client && play_make_hair(p->client, &p->plan, &start, &p->record.forest);
-    return p->created;
+    return p->created && play_stream_open(p->client, &p->plan, p->record.forest.forest, &p->stream);
 }
 
 /* ---- frames
  * ------------------------------------------------------------------------------------------------------------- */
 
-static void play_wait_ms(uint32_t ms)
-{
-    ms = ms < PLAY_BUSY_LEAST_MS ? PLAY_BUSY_LEAST_MS : ms > PLAY_BUSY_MOST_MS ? PLAY_BUSY_MOST_MS : ms;
-    struct timespec wait = {ms / 1000, (long)(ms % 1000) * 1000000};
-    nanosleep(&wait, NULL);
-}
-
-/* The hair at that time. A daemon that has too much to do is asked again. */
-static bool play_query(play *p, int64_t time_us, proto_message *answer, awtclient_error *error)
-{
-    for (int tries = 0; tries < PLAY_BUSY_TRIES; tries++) {
-        proto_message query = {.type = PROTO_QUERY};
-        query.as.query.forest = p->record.forest.forest;
-        query.as.query.time_us = time_us;
-        query.as.query.kind = p->plan.kind;
-        if (awtclient_call(p->client, &query, answer, error)) {
-            return true;
-        }
-        if (error->code != PROTO_ERROR_BUSY) {
-            return false;
-        }
-        play_wait_ms(error->retry_after_ms);
-    }
-    return false;
-}
-
-static bool play_ask_frame(play *p, size_t frame, proto_message *answer)
+static bool play_ask_frame(play *p, size_t frame, proto_message *answer, uint32_t *last_write_us)
 {
     awtclient_error error;
     int64_t time_us = play_time_us(p, frame);
@@ -154,7 +125,8 @@ static bool play_ask_frame(play *p, size_t frame, proto_message *answer)
     move.as.motion.body = play_wire_pose(&at.body);
     p->record.frames[frame].head = at.head;
     p->record.frames[frame].body = at.body;
-    if (!awtclient_send(p->client, &move, &error) || !play_query(p, time_us, answer, &error)) {
+    if (!awtclient_send(p->client, &move, &error) ||
+        !play_stream_ask(&p->stream, time_us, answer, last_write_us, &error)) {
         progress_hide(&p->progress);
         awtctl_failed("frame %zu: %s", frame + 1, error.text);
         return false;
@@ -184,30 +156,54 @@ static void play_keep_figures(play_frame *f, const struct proto_frame *from)
     f->link_error = from->link_error;
     f->kinetic_energy_j = from->kinetic_energy_j;
     f->bytes = from->glb.length;
+    f->delta = from->base != 0;
 }
 
-/* Writes and measures what is to be. */
-static bool play_keep_geometry(play *p, size_t frame, const proto_blob *glb)
+static bool play_measure(play *p, size_t frame, const struct proto_frame *from)
 {
-    char path[4200], text[4300];
     awt_error error;
-    bool write = p->plan.out && (frame + 1) % p->every == 0;
-    if (p->plan.kind == 0 && (write || p->plan.check || frame == 0) &&
-        strandcheck_add(&p->record.strands, glb->bytes, glb->length, &error) != AWT_OK) {
+    const geom_strands *strands = NULL;
+    awt_status status = play_stream_read(&p->stream, from, &strands, &error);
+    if (status == AWT_OK && strands) {
+        status = strandcheck_add(&p->record.strands, strands, &error);
+    }
+    if (status != AWT_OK) {
         progress_hide(&p->progress);
         awtctl_failed("frame %zu: %s", frame + 1, error.text);
+    }
+    return status == AWT_OK;
+}
+
+/* Writes and measures what is to be; each frame that others are deltas against is read. */
+static bool play_keep_geometry(play *p, size_t frame, const struct proto_frame *from)
+{
+    char path[4200], text[4300];
+    bool write = p->plan.out && (frame + 1) % p->every == 0;
+    if ((write || p->plan.check || frame == 0 || p->plan.deltas) && !play_measure(p, frame, from)) {
         return false;
     }
     if (!write) {
         return true;
     }
     play_frame_path(&p->record, frame, path, sizeof path);
-    p->record.frames[frame].written = files_write(path, glb->bytes, glb->length, text, sizeof text);
+    p->record.frames[frame].written = files_write(path, from->glb.bytes, from->glb.length, text, sizeof text);
     if (!p->record.frames[frame].written) {
         progress_hide(&p->progress);
         awtctl_failed("%s", text);
     }
     return p->record.frames[frame].written;
+}
+
+/* After the frame's bytes are done with. */
+static bool play_want_next(play *p, size_t frame)
+{
+    awtclient_error error;
+    if (!play_stream_credit(&p->stream, &error)) {
+        progress_hide(&p->progress);
+        awtctl_failed("frame %zu: %s", frame + 1, error.text);
+        return false;
+    }
+    return true;
 }
 
 /* The frame's way is over: its line can be printed. */
@@ -244,20 +240,20 @@ static bool play_last_write(play *p, uint32_t *write_us)
 
 static bool play_frames(play *p)
 {
-    uint32_t write_us;
+    uint32_t write_us = 0;
     p->progress = progress_begin(stderr, "play", p->plan.quiet);
     for (size_t i = 0; i < p->frame_count; i++) {
         proto_message answer;
-        if (!play_ask_frame(p, i, &answer)) {
+        if (!play_ask_frame(p, i, &answer, &write_us)) {
             return false;
         }
         const struct proto_frame *frame = &answer.as.frame;
         play_keep_figures(&p->record.frames[i], frame);
         p->record.frame_count = i + 1;
         if (i > 0) {
-            play_finish_frame(p, i - 1, frame->last_write_us);
+            play_finish_frame(p, i - 1, write_us);
         }
-        if (!play_keep_geometry(p, i, &frame->glb)) {
+        if (!play_keep_geometry(p, i, frame) || !play_want_next(p, i)) {
             return false;
         }
         play_show_progress(p, i);
@@ -297,6 +293,7 @@ static void play_fini(play *p)
     if (p->created) {
         play_end_forest(p, false);
     }
+    play_stream_close(&p->stream);
     awtclient_close(p->client);
     strandcheck_fini(&p->record.strands);
     free(p->record.frames);

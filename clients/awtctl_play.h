@@ -3,6 +3,7 @@
 #define CLIENTS_AWTCTL_PLAY_H
 
 #include "awtctl.h"
+#include "framering.h"
 #include "motion/motion.h"
 #include "strandcheck.h"
 
@@ -27,7 +28,8 @@ typedef struct play_plan {
     motion_options motion_options;
     double fps;
     long long frames, every; /* 0: the whole clip; 0: so that about 20 files come out */
-    uint8_t kind;            /* as in QUERY */
+    uint8_t kind, level;     /* as in QUERY */
+    bool deltas;             /* against the frames before */
     const char *out;         /* folder; NULL: no files */
     const char *json;        /* file, "-" or NULL */
     bool quiet, check;
@@ -46,6 +48,31 @@ bool play_make_hair(awtclient *client, const play_plan *plan, const motion_sampl
 
 proto_pose play_wire_pose(const awt_pose *pose);
 
+/* ---- the stream: how frames come --------------------------------------------------------------------------------- */
+
+/* Zeroed: closed. */
+typedef struct play_stream {
+    awtclient *client;
+    const play_plan *plan;
+    uint64_t forest;
+    uint64_t subscription, request; /* of deltas; 0: frames answer QUERYs */
+    framering *ring;
+    geom_binding *binding; /* of guides; else NULL */
+} play_stream;
+
+/* False: why has been said; play_stream_close is due all the same. */
+bool play_stream_open(awtclient *client, const play_plan *plan, uint64_t forest, play_stream *s);
+void play_stream_close(play_stream *s);
+
+/* Advances the forest; the frame is good until the next call of the client. *last_write_us: of the frame before. */
+bool play_stream_ask(play_stream *s, int64_t time_us, proto_message *frame, uint32_t *last_write_us,
+                     awtclient_error *error);
+/* Decodes it: strands until the next call, or NULL where the kind has none. */
+awt_status play_stream_read(play_stream *s, const struct proto_frame *frame, const geom_strands **strands,
+                            awt_error *error);
+/* The next frame may come, against the last one that was read. */
+bool play_stream_credit(play_stream *s, awtclient_error *error);
+
 /* ---- the record: every frame's figures -------------------------------------------------------------------------- */
 
 typedef struct play_frame {
@@ -56,6 +83,7 @@ typedef struct play_frame {
     float link_error, kinetic_energy_j;
     size_t bytes;
     bool written; /* to a file */
+    bool delta;
     awt_pose head, body;
 } play_frame;
 

@@ -90,6 +90,7 @@ typedef struct play_summary {
     } stages[STAGES];
     uint32_t active_min, active_max;
     double active_mean, bytes_mean;
+    uint64_t deltas;
     uint64_t splits, merges, steps, unreached_contacts, clamped_points, clamped_speeds;
     float link_error, last_kinetic_energy_j;
 } play_summary;
@@ -125,6 +126,7 @@ static play_summary summarise(const play_record *record)
         s.last_kinetic_energy_j = f->kinetic_energy_j;
         active += f->active_nodes;
         bytes += (double)f->bytes;
+        s.deltas += f->delta;
         s.splits += f->splits;
         s.merges += f->merges;
         s.steps += f->steps;
@@ -150,7 +152,11 @@ void play_record_print_summary(const play_record *record, FILE *file)
     }
     fprintf(file, "%-14s least %u, mean %.1f, greatest %u of %u; %" PRIu64 " splits, %" PRIu64 " merges\n",
             "active nodes", s.active_min, s.active_mean, s.active_max, record->forest.finest_nodes, s.splits, s.merges);
-    fprintf(file, "%-14s %.0f a frame\n", "bytes", s.bytes_mean);
+    fprintf(file, "%-14s %.0f a frame", "bytes", s.bytes_mean);
+    if (record->plan->deltas) {
+        fprintf(file, "; %" PRIu64 " of the frames were deltas", s.deltas);
+    }
+    fprintf(file, "\n");
     fprintf(file, "%-14s greatest %.2e; %" PRIu64 " unreached contacts, %" PRIu64 " speeds at the limit\n",
             "link error", (double)s.link_error, s.unreached_contacts, s.clamped_speeds);
     fprintf(file, "%-14s %" PRIu64 "\n", "clamped points", s.clamped_points);
@@ -191,6 +197,7 @@ static void json_frame(jsonout *json, const play_record *record, size_t frame)
         jsonout_unsigned(json, STAGE_NAMES[stage], stage_of(f, stage));
     }
     jsonout_unsigned(json, "bytes", f->bytes);
+    jsonout_bool(json, "delta", f->delta);
     jsonout_text(json, "file", f->written ? path : NULL);
     jsonout_unsigned(json, "unreached_contacts", f->unreached_contacts);
     jsonout_unsigned(json, "clamped_points", f->clamped_points);
@@ -280,6 +287,7 @@ static void json_summary(jsonout *json, const play_record *record)
     jsonout_unsigned(json, "merges", s.merges);
     jsonout_unsigned(json, "steps", s.steps);
     jsonout_real(json, "bytes_mean", s.bytes_mean);
+    jsonout_unsigned(json, "deltas", s.deltas);
     jsonout_float(json, "link_error", s.link_error);
     jsonout_float(json, "last_kinetic_energy_j", s.last_kinetic_energy_j);
     jsonout_unsigned(json, "unreached_contacts", s.unreached_contacts);

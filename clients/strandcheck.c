@@ -2,7 +2,6 @@
 #include "strandcheck.h"
 
 #include "base/error.h"
-#include "geom/read.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -70,29 +69,25 @@ static void check_strand(strandcheck *check, const geom_strands *strands, uint32
     check->greatest_root_m = fmax(check->greatest_root_m, root);
 }
 
-awt_status strandcheck_add(strandcheck *check, const void *glb, size_t size, awt_error *error)
+awt_status strandcheck_add(strandcheck *check, const geom_strands *strands, awt_error *error)
 {
-    geom_strands strands;
-    awt_status status = geom_read_frame(glb, size, &strands, error);
+    awt_status status = check_finite(strands, error);
     if (status != AWT_OK) {
         return status;
     }
-    status = check_finite(&strands, error);
-    if (status == AWT_OK && !check->first_roots) {
-        status = check_first(check, &strands, error);
-    } else if (status == AWT_OK &&
-               (strands.strand_count != check->strand_count || strands.points_per_strand != check->points_per_strand)) {
-        status =
-            error_set(error, AWT_BAD_VALUE, "the frame has %u strands of %u points, the first one had %u of %u",
-                      strands.strand_count, strands.points_per_strand, check->strand_count, check->points_per_strand);
-    } else if (status == AWT_OK) {
-        for (uint32_t s = 0; s < strands.strand_count; s++) {
-            check_strand(check, &strands, s);
-        }
-        check->frames++;
+    if (!check->first_roots) {
+        return check_first(check, strands, error);
     }
-    geom_strands_fini(&strands);
-    return status;
+    if (strands->strand_count != check->strand_count || strands->points_per_strand != check->points_per_strand) {
+        return error_set(error, AWT_BAD_VALUE, "the frame has %u strands of %u points, the first one had %u of %u",
+                         strands->strand_count, strands->points_per_strand, check->strand_count,
+                         check->points_per_strand);
+    }
+    for (uint32_t s = 0; s < strands->strand_count; s++) {
+        check_strand(check, strands, s);
+    }
+    check->frames++;
+    return AWT_OK;
 }
 
 double strandcheck_percent(const strandcheck *check, double share)

@@ -3,7 +3,7 @@
 #ifndef CLIENTS_STRANDCHECK_H
 #define CLIENTS_STRANDCHECK_H
 
-#include "awt.h"
+#include "geom/read.h"
 
 enum { STRANDCHECK_BINS = 10001 }; /* 0 to 100 %, 0.01 % each; the last holds what is beyond */
 
@@ -18,10 +18,9 @@ typedef struct strandcheck {
     double greatest_root_m; /* distance of a strand's root from where the first frame has it */
 } strandcheck;
 
-/* Decodes a frame and adds it to the figures. Zeroed is how a strandcheck begins; strandcheck_fini is how it ends.
- * What geom_read_ribbons says, and AWT_BAD_VALUE where a point is not finite or the strands are not the first frame's.
- */
-awt_status strandcheck_add(strandcheck *check, const void *glb, size_t size, awt_error *error);
+/* Adds a decoded frame to the figures. Zeroed is how a strandcheck begins; strandcheck_fini is how it ends.
+ * AWT_BAD_VALUE where a point is not finite or the strands are not the first frame's, AWT_NO_MEMORY. */
+awt_status strandcheck_add(strandcheck *check, const geom_strands *strands, awt_error *error);
 
 /* Change of arc length in percent that `share` of the strands (0 to 1) do not exceed; beyond
  * 100 it only says 100.01. */

@@ -8,6 +8,18 @@
 
 enum { STRANDS = 40, POINTS = 16 };
 
+/* Decodes and adds. */
+static awt_status add_glb(strandcheck *check, const void *glb, size_t size, awt_error *error)
+{
+    geom_strands strands;
+    awt_status status = geom_read_frame(glb, size, &strands, error);
+    if (status == AWT_OK) {
+        status = strandcheck_add(check, &strands, error);
+        geom_strands_fini(&strands);
+    }
+    return status;
+}
+
 /* Scales each strand about its root and moves it, by amounts for every fourth strand and for the others. */
 static void change(geom_fixture *f, float scale_fourth, float scale, float move)
 {
@@ -25,7 +37,7 @@ static void add(strandcheck *check, geom_fixture *f)
     awt_error error = {0};
     geom_frame_stats stats;
     geom_fixture_encode(f, &stats);
-    CHECK_INT(strandcheck_add(check, f->frame.bytes, f->frame.size, &error), AWT_OK);
+    CHECK_INT(add_glb(check, f->frame.bytes, f->frame.size, &error), AWT_OK);
     CHECK_TEXT(error.text, "");
 }
 
@@ -58,8 +70,10 @@ TEST(strandcheck_refuses_other_strands_and_broken_frames)
     geom_fixture_init(&other, STRANDS + 1, POINTS, 3);
     add(&check, &f);
     geom_fixture_encode(&other, &stats);
-    CHECK_INT(strandcheck_add(&check, other.frame.bytes, other.frame.size, &error), AWT_BAD_VALUE);
-    CHECK(strandcheck_add(&check, f.frame.bytes, f.frame.size / 2, &error) != AWT_OK);
+    CHECK_INT(add_glb(&check, other.frame.bytes, other.frame.size, &error), AWT_BAD_VALUE);
+    f.points[0] = NAN;
+    const geom_strands broken = {.strand_count = STRANDS, .points_per_strand = POINTS, .positions = f.points};
+    CHECK_INT(strandcheck_add(&check, &broken, &error), AWT_BAD_VALUE);
     CHECK_INT(check.frames, 0);
     strandcheck_fini(&check);
     geom_fixture_fini(&f);

@@ -1,0 +1,25 @@
+/* framering.h: the frames that a client keeps, so that it can read deltas: the newest 8, as the protocol has it
+ * (PROTOCOL.md, Deltas). Memory is taken for the frames that come and used again. */
+#ifndef CLIENTS_FRAMERING_H
+#define CLIENTS_FRAMERING_H
+
+#include "geom/receive.h"
+#include "proto.h"
+
+typedef struct framering framering;
+
+/* NULL: no memory. */
+framering *framering_create(void);
+/* Accepts NULL. */
+void framering_destroy(framering *ring);
+
+/* Reads a FRAME of strands, whole or a delta, of ribbons, or, by `binding` (NULL for others), of guides, and keeps it
+ * under its sequence. *out is the frame, good until the next call. AWT_BAD_VALUE (a delta against a frame that is not
+ * here, or a kind without strands), and what geom_receive_frame and geom_read_delta say. */
+awt_status framering_take(framering *ring, const struct proto_frame *frame, const geom_binding *binding,
+                          const geom_strands **out, awt_error *error);
+
+/* What CREDIT's `have` may say: the sequence of the newest frame kept; 0: none. */
+uint64_t framering_newest(const framering *ring);
+
+#endif
