@@ -2,28 +2,10 @@
 #include "drawing.h"
 #include "base/error.h"
 #include "clock.h"
+#include "drawn_form.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-/* A frame in whole numbers; sequence 0: none. */
-typedef struct kept_frame {
-    geom_quantised *numbers;
-    uint64_t sequence;
-    uint32_t clamped_points;
-} kept_frame;
-
-/* What there is for one form; zeroed: it is not in use. */
-typedef struct drawn_form {
-    geom_layout *layout;
-    geom_scratch *scratch;
-    bool *unchanged;                        /* [patches] */
-    picture *previous;                      /* a reference: the last whole frame's */
-    const view *frame;                      /* in `previous` */
-    uint64_t made_of;                       /* sequence of the state that `frame` is of */
-    kept_frame ring[LIMIT_DELTA_BASES + 1]; /* the bases, and the present frame */
-    uint32_t newest;                        /* place in `ring` */
-} drawn_form;
 
 /* Guides or strands of a state; [0] is the latest evaluated, [1] the one before. */
 typedef struct drawn_guides {
@@ -100,25 +82,13 @@ awt_status drawing_create(const awt_groom *groom, drawing **out, awt_error *erro
     return AWT_OK;
 }
 
-static void form_fini(drawn_form *f)
-{
-    geom_scratch_destroy(f->scratch);
-    geom_layout_destroy(f->layout);
-    free(f->unchanged);
-    picture_release(f->previous);
-    for (int i = 0; i <= LIMIT_DELTA_BASES; i++) {
-        geom_quantised_destroy(f->ring[i].numbers);
-    }
-    *f = (drawn_form){0};
-}
-
 void drawing_destroy(drawing *d)
 {
     if (!d) {
         return;
     }
     for (int i = 0; i < FORM_COUNT; i++) {
-        form_fini(&d->forms[i]);
+        drawn_form_fini(&d->forms[i]);
     }
     for (int k = 0; k < 2; k++) {
         free(d->guides[k].centres);
@@ -132,14 +102,7 @@ void drawing_destroy(drawing *d)
 
 uint64_t drawing_form_bytes(const drawing *d, int form)
 {
-    const drawn_form *f = &d->forms[form];
-    uint64_t bytes = f->scratch ? geom_scratch_bytes(f->scratch) : 0;
-    bytes += f->unchanged ? geom_layout_patches(f->layout) * sizeof *f->unchanged : 0;
-    bytes += f->frame ? f->frame->glb.capacity : 0;
-    for (int i = 0; i <= LIMIT_DELTA_BASES; i++) {
-        bytes += f->ring[i].numbers ? geom_quantised_bytes(f->ring[i].numbers) : 0;
-    }
-    return bytes;
+    return drawn_form_bytes(&d->forms[form]);
 }
 
 uint64_t drawing_bytes(const drawing *d)
@@ -243,24 +206,7 @@ static awt_status draw_nodes(const drawing_job *j, view *v)
                              &v->glb, j->error);
 }
 
-/* Layout and scratch, where they are missing. */
-static awt_status use_form(const drawing_job *j, int form)
-{
-    drawn_form *f = &j->d->forms[form];
-    const geom_layout_def def = {.kind = form_at(form)->kind, .bound = form_at(form)->kind == GEOM_GUIDES};
-    awt_status status = f->layout ? AWT_OK : geom_layout_create(j->d->groom, &def, &f->layout, j->error);
-    if (status == AWT_OK && !f->scratch) {
-        status = geom_scratch_create(f->layout, &f->scratch, j->error);
-    }
-    if (status == AWT_OK && !f->unchanged) {
-        const uint32_t patches = geom_layout_patches(f->layout);
-        f->unchanged = calloc(patches > 0 ? patches : 1, sizeof *f->unchanged);
-        status = f->unchanged ? AWT_OK : error_set(j->error, AWT_NO_MEMORY, NULL);
-    }
-    return status;
-}
-
-/* The present frame in whole numbers, into the place of the oldest. NULL: j->error says why. */
+/* The present frame in whole numbers. NULL: j->error says why. */
 static const kept_frame *keep_frame(const drawing_job *j, int form)
 {
     drawn_form *f = &j->d->forms[form];
@@ -268,32 +214,15 @@ static const kept_frame *keep_frame(const drawing_job *j, int form)
     if (before->sequence == j->sequence) {
         return before;
     }
-    const uint32_t place = (f->newest + 1) % (LIMIT_DELTA_BASES + 1);
-    kept_frame *kept = &f->ring[place];
-    kept->sequence = 0;
-    kept->clamped_points = 0;
-    if (!kept->numbers && geom_quantised_create(f->layout, &kept->numbers, j->error) != AWT_OK) {
-        return NULL;
-    }
+    kept_frame *now = drawn_form_oldest(f, j->error);
     const geom_quantise_def def = {.points = j->d->strands[0].points,
                                    .unchanged = find_unchanged(j, form, before->sequence),
                                    .previous = before->numbers};
-    if (geom_quantise(f->layout, &def, kept->numbers, &kept->clamped_points, j->error) != AWT_OK) {
+    if (!now || geom_quantise(f->layout, &def, now->numbers, &now->clamped_points, j->error) != AWT_OK) {
         return NULL;
     }
-    kept->sequence = j->sequence;
-    f->newest = place;
-    return kept;
-}
-
-static const kept_frame *find_base(const drawn_form *f, uint64_t sequence)
-{
-    for (int i = 0; i <= LIMIT_DELTA_BASES; i++) {
-        if (f->ring[i].sequence == sequence) {
-            return &f->ring[i];
-        }
-    }
-    return NULL;
+    drawn_form_keep(f, now, j->sequence);
+    return now;
 }
 
 static awt_status draw_whole(const drawing_job *j, const kept_frame *kept, view *v)
@@ -312,11 +241,7 @@ static awt_status draw_whole(const drawing_job *j, const kept_frame *kept, view 
     awt_status status = geom_encode(f->layout, f->scratch, &def, &v->glb, &stats, j->error);
     if (status == AWT_OK) {
         v->clamped_points = kept ? kept->clamped_points : stats.clamped_points;
-        picture_hold(j->out);
-        picture_release(f->previous);
-        f->previous = j->out;
-        f->frame = v;
-        f->made_of = j->sequence;
+        drawn_form_remember(f, j->out, v, j->sequence);
     }
     return status;
 }
@@ -345,7 +270,7 @@ static awt_status prepare(const drawing_job *j, int form, const kept_frame **kep
     } else {
         status = take_strands(j);
     }
-    status = status == AWT_OK ? use_form(j, form) : status;
+    status = status == AWT_OK ? drawn_form_use(&j->d->forms[form], j->d->groom, form, j->error) : status;
     if (status == AWT_OK && form_at(form)->has_deltas && j->wanted->keeps[form]) {
         *kept = keep_frame(j, form);
         status = *kept ? AWT_OK : j->error->status;
@@ -362,7 +287,7 @@ static awt_status draw_view(const drawing_job *j, view_name name)
     if (status != AWT_OK) {
         return status;
     }
-    base = kept && name.base != 0 ? find_base(&j->d->forms[name.form], name.base) : NULL;
+    base = kept && name.base != 0 ? drawn_form_find(&j->d->forms[name.form], name.base) : NULL;
     name.base = base ? name.base : 0;
     if (picture_view(j->out, name)) {
         return AWT_OK;

@@ -5,8 +5,10 @@
 #include "invariant_fixture.h"
 
 #include "base/assert.h"
+#include "drawing.h"
 #include "unit/delta_fixture.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 /* Calls by the present thread since count_begin; the tests' own threads go uncounted. */
@@ -144,4 +146,57 @@ TEST(encoding_deltas_allocates_nothing)
         CHECK_INT(status, AWT_OK);
     }
     delta_fixture_fini(&f);
+}
+
+/* The four forms and a delta of every step, into pictures that are used again as the daemon uses them: once their
+ * buffers have grown, nothing is taken and nothing given back. */
+TEST(drawing_allocates_nothing_in_the_steady_state)
+{
+    enum { PICTURES = 3, WARM = 100, STEPS = 160 };
+    awt_groom *groom = small_groom("long", 2);
+    awt_params params = small_params("long");
+    awt_forest *f = small_forest(groom, &params);
+    wild w = wild_make(31, 1.0);
+    drawing *d = NULL;
+    awt_error error = {0};
+    picture *pictures[PICTURES] = {NULL};
+    CHECK_INT(drawing_create(groom, &d, &error), AWT_OK);
+    const uint64_t empty = drawing_bytes(d);
+    unsigned counted = 0;
+    for (uint64_t n = 1; n <= STEPS; n++) {
+        awt_motion m = wild_at(&w, (int64_t)n * AWT_STEP_US);
+        awt_forest_move(f, &m, &error);
+        awt_forest_advance(f, m.time_us, NULL, &error);
+        picture **at = &pictures[n % PICTURES];
+        *at = *at ? *at : picture_create();
+        ASSERT(*at);
+        wishes wanted = {.keeps = {[1] = true}};
+        for (int form = 0; form < FORM_COUNT; form++) {
+            if (form_at(form)->kind != GEOM_NODES) {
+                wishes_add(&wanted, (view_name){.form = form});
+            }
+        }
+        wishes_add(&wanted, (view_name){.form = 1, .base = n > 3 ? n - 3 : 0});
+        count_begin();
+        const bool renewed = picture_renew(*at);
+        const awt_status status = drawing_draw(d, f, n, &wanted, *at, &error);
+        const unsigned calls_now = count_end();
+        counted += n > WARM ? calls_now : 0;
+        CHECK(n > 1 || calls_now > 0);
+        CHECK(renewed);
+        CHECK_INT(status, AWT_OK);
+        CHECK_INT((*at)->view_count, n > 3 ? 4 : 3);
+    }
+    CHECK_INT(counted, 0);
+    printf("     memory: %llu bytes before the first frame, then", (unsigned long long)empty);
+    for (int form = 0; form < FORM_COUNT; form++) {
+        printf(" %s %llu", form_name(form), (unsigned long long)drawing_form_bytes(d, form));
+    }
+    printf(", all %llu\n", (unsigned long long)drawing_bytes(d));
+    drawing_destroy(d);
+    for (int i = 0; i < PICTURES; i++) {
+        picture_release(pictures[i]);
+    }
+    awt_forest_destroy(f);
+    awt_groom_destroy(groom);
 }

@@ -90,6 +90,17 @@ static double distance(const geom_strands *a, const geom_strands *b)
     return greatest;
 }
 
+static bool holds(const proto_blob *blob, const char *text)
+{
+    const size_t length = strlen(text);
+    for (size_t i = 0; i + length <= blob->length; i++) {
+        if (memcmp(blob->bytes + i, text, length) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static geom_binding *get_binding(scene *s)
 {
     proto_message message = {.type = PROTO_BINDING, .request = 9};
@@ -125,6 +136,7 @@ TEST(server_views_of_every_kind_show_the_same_step_without_another)
         shown[kind] = receive(binding, frame);
         CHECK_INT(shown[kind].kind, kind);
         CHECK(distance(&shown[0], &shown[kind]) < 0.0005);
+        CHECK(holds(&frame->glb, "_OFFSET") == (kind == GEOM_GUIDES)); /* against the binding */
     }
     const struct proto_frame *nodes = look(&s, GEOM_NODES);
     geom_nodes got = {0};
