@@ -5,24 +5,15 @@
 #include "drawn_form.h"
 
 #include <stdlib.h>
-#include <string.h>
-
-/* Guides or strands of a state; [0] is the latest evaluated, [1] the one before. */
-typedef struct drawn_guides {
-    float *centres, *frames; /* [finest_nodes][3], [finest_nodes][4] */
-    uint64_t sequence;
-} drawn_guides;
-
-typedef struct drawn_strands {
-    float *points; /* [strand_count][points_per_strand][3] */
-    uint64_t sequence;
-} drawn_strands;
 
 struct drawing {
     const awt_groom *groom;
     awt_groom_info info;
-    drawn_guides guides[2];
-    drawn_strands strands[2];
+    float *centres, *frames; /* [finest_nodes][3], [finest_nodes][4] */
+    float *points;           /* [strand_count][points_per_strand][3] */
+    bool guides_made, points_made;
+    uint64_t guides_at, points_at; /* sub-steps that the forest had made when they were brought up to date */
+    bool *moved;                   /* [wisp_count[0]]: working memory */
     float *strand_scratch;
     awt_node *nodes; /* [finest_nodes] */
     uint64_t held;   /* bytes of the arrays */
@@ -67,12 +58,11 @@ awt_status drawing_create(const awt_groom *groom, drawing **out, awt_error *erro
             error_set(error, AWT_LIMIT, "%lu strands of %lu points are more than %d points together",
                       (unsigned long)d->info.strand_count, (unsigned long)d->info.points_per_strand, AWT_MAX_POINTS);
     }
-    for (int k = 0; k < 2 && status == AWT_OK; k++) {
-        d->guides[k].centres = take_memory(d, d->info.finest_nodes, 3 * sizeof(float));
-        d->guides[k].frames = take_memory(d, d->info.finest_nodes, 4 * sizeof(float));
-        if (!d->guides[k].centres || !d->guides[k].frames) {
-            status = error_set(error, AWT_NO_MEMORY, NULL);
-        }
+    if (status == AWT_OK) {
+        d->centres = take_memory(d, d->info.finest_nodes, 3 * sizeof(float));
+        d->frames = take_memory(d, d->info.finest_nodes, 4 * sizeof(float));
+        d->moved = take_memory(d, d->info.wisp_count[0], sizeof *d->moved);
+        status = d->centres && d->frames && d->moved ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
     }
     if (status != AWT_OK) {
         drawing_destroy(d);
@@ -90,11 +80,10 @@ void drawing_destroy(drawing *d)
     for (int i = 0; i < FORM_COUNT; i++) {
         drawn_form_fini(&d->forms[i]);
     }
-    for (int k = 0; k < 2; k++) {
-        free(d->guides[k].centres);
-        free(d->guides[k].frames);
-        free(d->strands[k].points);
-    }
+    free(d->centres);
+    free(d->frames);
+    free(d->points);
+    free(d->moved);
     free(d->strand_scratch);
     free(d->nodes);
     free(d);
@@ -116,77 +105,57 @@ uint64_t drawing_bytes(const drawing *d)
 
 /* ---- the state --------------------------------------------------------------------------------------------------- */
 
+/* Which top-level wisps moved since then; NULL: none did. */
+static const bool *find_moved(const drawing_job *j, uint64_t since)
+{
+    return awt_forest_moved(j->forest, since, j->d->moved) > 0 ? j->d->moved : NULL;
+}
+
+/* Brings the guides up to date. */
 static void take_guides(const drawing_job *j)
 {
     drawing *d = j->d;
-    if (d->guides[0].sequence == j->sequence) {
-        return;
+    const bool *moved = NULL;
+    if (!d->guides_made) {
+        awt_forest_guides(j->forest, d->centres, d->frames);
+    } else if ((moved = find_moved(j, d->guides_at)) != NULL) {
+        awt_forest_guides_of(j->forest, moved, d->centres, d->frames);
     }
-    const drawn_guides before = d->guides[0];
-    d->guides[0] = d->guides[1];
-    d->guides[1] = before;
-    awt_forest_guides(j->forest, d->guides[0].centres, d->guides[0].frames);
-    d->guides[0].sequence = j->sequence;
+    d->guides_made = true;
+    d->guides_at = awt_forest_sub_steps(j->forest);
 }
 
+/* Brings guides and strands up to date. */
 static awt_status take_strands(const drawing_job *j)
 {
     drawing *d = j->d;
+    const bool *moved = NULL;
     if (!d->strand_scratch) {
         d->strand_scratch = take_memory(d, awt_groom_strand_scratch(d->groom), sizeof(float));
     }
-    for (int k = 0; k < 2; k++) {
-        if (!d->strands[k].points) {
-            const uint64_t points = (uint64_t)d->info.strand_count * d->info.points_per_strand;
-            d->strands[k].points = take_memory(d, points, 3 * sizeof(float));
-        }
+    if (!d->points) {
+        d->points = take_memory(d, (uint64_t)d->info.strand_count * d->info.points_per_strand, 3 * sizeof(float));
     }
-    if (!d->strand_scratch || !d->strands[0].points || !d->strands[1].points) {
+    if (!d->strand_scratch || !d->points) {
         return error_set(j->error, AWT_NO_MEMORY, NULL);
     }
-    if (d->strands[0].sequence != j->sequence) {
-        take_guides(j);
-        const drawn_strands before = d->strands[0];
-        d->strands[0] = d->strands[1];
-        d->strands[1] = before;
-        awt_groom_strands(d->groom, d->guides[0].centres, d->guides[0].frames, d->strand_scratch, d->strands[0].points);
-        d->strands[0].sequence = j->sequence;
+    take_guides(j);
+    if (!d->points_made) {
+        awt_groom_strands(d->groom, d->centres, d->frames, d->strand_scratch, d->points);
+    } else if ((moved = find_moved(j, d->points_at)) != NULL) {
+        awt_groom_strands_of(d->groom, moved, d->centres, d->frames, d->strand_scratch, d->points);
     }
+    d->points_made = true;
+    d->points_at = awt_forest_sub_steps(j->forest);
     return AWT_OK;
 }
 
-/* ---- patches that did not move ----------------------------------------------------------------------------------- */
-
-static bool same_floats(const float *a, const float *b, size_t begin, size_t count)
+/* The form's patches that did not move since then. */
+static const bool *find_unchanged(const drawing_job *j, int form, uint64_t since)
 {
-    return memcmp(a + begin, b + begin, count * sizeof *a) == 0;
-}
-
-static bool patch_is_same(const drawing *d, bool guides, geom_patch patch)
-{
-    if (guides) {
-        const drawn_guides *now = &d->guides[0], *before = &d->guides[1];
-        const size_t first = (size_t)patch.first_strand * d->info.sections;
-        const size_t count = (size_t)patch.strands * d->info.sections;
-        return same_floats(now->centres, before->centres, 3 * first, 3 * count) &&
-               same_floats(now->frames, before->frames, 4 * first, 4 * count);
-    }
-    const size_t points = (size_t)d->info.points_per_strand * 3;
-    return same_floats(d->strands[0].points, d->strands[1].points, patch.first_strand * points, patch.strands * points);
-}
-
-/* Which patches are to the bit as they were in the state of `made_of`; NULL: that is not known. */
-static const bool *find_unchanged(const drawing_job *j, int form, uint64_t made_of)
-{
-    const drawing *d = j->d;
-    const drawn_form *f = &d->forms[form];
-    const bool guides = form_at(form)->kind == GEOM_GUIDES, same = made_of == j->sequence;
-    if (made_of == 0 || (!same && made_of != (guides ? d->guides[1].sequence : d->strands[1].sequence))) {
-        return NULL;
-    }
-    for (uint32_t i = 0; i < geom_layout_patches(f->layout); i++) {
-        f->unchanged[i] = same || patch_is_same(d, guides, geom_layout_patch(f->layout, i));
-    }
+    const drawn_form *f = &j->d->forms[form];
+    awt_forest_moved(j->forest, since, j->d->moved);
+    geom_layout_unchanged(f->layout, j->d->moved, f->unchanged);
     return f->unchanged;
 }
 
@@ -215,13 +184,13 @@ static const kept_frame *keep_frame(const drawing_job *j, int form)
         return before;
     }
     kept_frame *now = drawn_form_oldest(f, j->error);
-    const geom_quantise_def def = {.points = j->d->strands[0].points,
-                                   .unchanged = find_unchanged(j, form, before->sequence),
+    const geom_quantise_def def = {.points = j->d->points,
+                                   .unchanged = before->sequence ? find_unchanged(j, form, before->made_at) : NULL,
                                    .previous = before->numbers};
     if (!now || geom_quantise(f->layout, &def, now->numbers, &now->clamped_points, j->error) != AWT_OK) {
         return NULL;
     }
-    drawn_form_keep(f, now, j->sequence);
+    drawn_form_keep(f, j->sequence, awt_forest_sub_steps(j->forest));
     return now;
 }
 
@@ -230,18 +199,18 @@ static awt_status draw_whole(const drawing_job *j, const kept_frame *kept, view 
     const drawing *d = j->d;
     drawn_form *f = &j->d->forms[v->name.form];
     const bool guides = form_at(v->name.form)->kind == GEOM_GUIDES;
-    const geom_frame_def def = {.points = guides ? d->guides[0].centres : d->strands[0].points,
-                                .frames = guides ? d->guides[0].frames : NULL,
+    const geom_frame_def def = {.points = guides ? d->centres : d->points,
+                                .frames = guides ? d->frames : NULL,
                                 .quantised = kept ? kept->numbers : NULL,
                                 .head = awt_forest_head(j->forest),
                                 .time_us = awt_forest_time(j->forest),
-                                .unchanged = find_unchanged(j, v->name.form, f->made_of),
+                                .unchanged = f->frame ? find_unchanged(j, v->name.form, f->made_at) : NULL,
                                 .previous = f->frame ? &f->frame->glb : NULL};
     geom_frame_stats stats = {0};
     awt_status status = geom_encode(f->layout, f->scratch, &def, &v->glb, &stats, j->error);
     if (status == AWT_OK) {
         v->clamped_points = kept ? kept->clamped_points : stats.clamped_points;
-        drawn_form_remember(f, j->out, v, j->sequence);
+        drawn_form_remember(f, j->out, v, awt_forest_sub_steps(j->forest));
     }
     return status;
 }

@@ -44,13 +44,13 @@ uint64_t drawn_form_bytes(const drawn_form *f)
     return bytes;
 }
 
-void drawn_form_remember(drawn_form *f, picture *shown, const view *v, uint64_t sequence)
+void drawn_form_remember(drawn_form *f, picture *shown, const view *v, uint64_t made_at)
 {
     picture_hold(shown);
     picture_release(f->previous);
     f->previous = shown;
     f->frame = v;
-    f->made_of = sequence;
+    f->made_at = made_at;
 }
 
 const kept_frame *drawn_form_find(const drawn_form *f, uint64_t sequence)
@@ -74,8 +74,9 @@ kept_frame *drawn_form_oldest(drawn_form *f, awt_error *error)
     return oldest;
 }
 
-void drawn_form_keep(drawn_form *f, kept_frame *filled, uint64_t sequence)
+void drawn_form_keep(drawn_form *f, uint64_t sequence, uint64_t made_at)
 {
-    filled->sequence = sequence;
     f->newest = (f->newest + 1) % PLACES;
+    f->ring[f->newest].sequence = sequence;
+    f->ring[f->newest].made_at = made_at;
 }

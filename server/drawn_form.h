@@ -9,6 +9,7 @@
 typedef struct kept_frame {
     geom_quantised *numbers;
     uint64_t sequence; /* 0: none */
+    uint64_t made_at;  /* sub-steps that the forest had made */
     uint32_t clamped_points;
 } kept_frame;
 
@@ -18,8 +19,8 @@ typedef struct drawn_form {
     geom_scratch *scratch;
     bool *unchanged;                        /* [patches]: working memory */
     picture *previous;                      /* a reference: the last whole frame's */
-    const view *frame;                      /* in `previous` */
-    uint64_t made_of;                       /* sequence of the state that `frame` is of; 0: there is none */
+    const view *frame;                      /* in `previous`; NULL: there is none */
+    uint64_t made_at;                       /* sub-steps that the forest had made then */
     kept_frame ring[LIMIT_DELTA_BASES + 1]; /* the bases, and the present frame */
     uint32_t newest;                        /* place in `ring` */
 } drawn_form;
@@ -31,13 +32,14 @@ void drawn_form_fini(drawn_form *f);
 /* Bytes that it holds, without the layout. */
 uint64_t drawn_form_bytes(const drawn_form *f);
 
-/* `v` of `shown` is the last whole frame from now on. */
-void drawn_form_remember(drawn_form *f, picture *shown, const view *v, uint64_t sequence);
+/* `v` of `shown`, of a forest that has made so many sub-steps, is the last whole frame from now on. */
+void drawn_form_remember(drawn_form *f, picture *shown, const view *v, uint64_t made_at);
 
 /* The frame of that sequence; NULL: it is not kept, or not any more. */
 const kept_frame *drawn_form_find(const drawn_form *f, uint64_t sequence);
-/* The place of the oldest, emptied, which `newest` becomes when it is filled. NULL: no memory. */
+/* The place of the oldest, emptied. NULL: no memory. */
 kept_frame *drawn_form_oldest(drawn_form *f, awt_error *error);
-void drawn_form_keep(drawn_form *f, kept_frame *filled, uint64_t sequence);
+/* That place has been filled, and is the newest. */
+void drawn_form_keep(drawn_form *f, uint64_t sequence, uint64_t made_at);
 
 #endif
