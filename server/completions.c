@@ -98,12 +98,16 @@ static bool accept_created(service *shared, resident *r, session *asker)
     return false;
 }
 
-/* What was drawn is the resident's from now on. */
-static void take_picture(service *shared, resident *r)
+/* What was drawn is the resident's from now on. False: nothing new is to be seen. */
+static bool take_picture(service *shared, resident *r)
 {
-    shared->counters.frames_encoded += r->work.drawn->view_count;
-    registry_publish(r, r->work.drawn);
+    picture *drawn = r->work.drawn;
     r->work.drawn = NULL;
+    if (!drawn) {
+        return false;
+    }
+    shared->counters.frames_encoded += drawn->view_count;
+    return registry_publish(r, drawn);
 }
 
 static void take_created(service *shared, resident *r)
@@ -178,10 +182,7 @@ static void answer_all(service *shared, resident *r)
 
 static void take_drawn(service *shared, resident *r)
 {
-    const bool drawn = r->work.drawn != NULL;
-    if (drawn) {
-        take_picture(shared, r);
-    }
+    const bool drawn = take_picture(shared, r);
     if (r->work.binding) {
         r->binding = r->work.binding;
         r->work.binding = NULL;

@@ -249,17 +249,33 @@ static void note_sizes(resident *r, const picture *drawn)
     }
 }
 
-void registry_publish(resident *r, picture *drawn)
+static bool shows_more(const picture *drawn, const picture *before)
 {
-    note_sizes(r, drawn);
+    for (uint32_t i = 0; i < drawn->view_count; i++) {
+        if (!picture_view(before, drawn->views[i].name)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool registry_publish(resident *r, picture *drawn)
+{
     picture *before = r->latest;
+    const bool again = before && before->figures.sequence == drawn->figures.sequence;
+    note_sizes(r, drawn);
+    if (again && !shows_more(drawn, before)) { /* else a client could pile up pictures of one step */
+        keep_spare(r, drawn);
+        return false;
+    }
     r->latest = drawn;
     r->sequence = drawn->figures.sequence;
-    if (before && before->figures.sequence == r->sequence) {
+    if (again) {
         drawn->earlier = before;
     } else if (before) {
         keep_spare(r, before);
     }
+    return true;
 }
 
 resident *registry_take_back(job *done)

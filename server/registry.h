@@ -93,8 +93,9 @@ bool registry_push(registry *reg, resident *r, forest_input *input);
 /* Has the present state drawn again, for a subscription that lacks its view. */
 void registry_redraw(registry *reg, resident *r, int64_t now_us);
 
-/* The picture that a job drew becomes the latest, or stands on it where it is of the same step. Takes the reference. */
-void registry_publish(resident *r, picture *drawn);
+/* The picture that a job drew becomes the latest, or stands on it where it is of the same step. Takes the reference.
+ * False: it shows nothing of that step that was not there before, and the latest stays. */
+bool registry_publish(resident *r, picture *drawn);
 
 /* The resident whose job this is, for its results; it stays busy until registry_continue. */
 resident *registry_take_back(job *done);

@@ -224,6 +224,26 @@ TEST(server_views_are_shown_though_the_step_beside_them_fails)
     scene_fini(&s);
 }
 
+TEST(server_views_of_one_step_do_not_pile_up)
+{
+    scene s;
+    scene_init(&s);
+    advance(&s, GEOM_STRANDS, true);
+    ask(&s, true, GEOM_RIBBON); /* a worker has it */
+    ask(&s, true, GEOM_RIBBON); /* waits, and is drawn in vain */
+    fake_work(&s.shared, s.client);
+    for (int i = 0; i < 2; i++) {
+        CHECK_U64(fake_expect(s.client, PROTO_FRAME)->as.frame.sequence, 2);
+    }
+    const resident *r = registry_find(&s.shared.forests, s.forest);
+    int pictures = 0;
+    for (const picture *p = r ? r->latest : NULL; p; p = p->earlier) {
+        pictures++;
+    }
+    CHECK_INT(pictures, 2);
+    scene_fini(&s);
+}
+
 TEST(server_binding_is_made_once_and_refuses_who_may_not)
 {
     scene s;
