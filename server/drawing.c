@@ -6,14 +6,23 @@
 
 #include <stdlib.h>
 
+/* The strands of one level, which ribbons and strands are made of. */
+typedef struct drawn_level {
+    float *points; /* [geom_layout_strands][points_per_strand][3] */
+    bool made;
+    uint64_t made_at; /* sub-steps that the forest had made when they were brought up to date */
+} drawn_level;
+
+enum { LEVELS = FORM_LEVEL_GREATEST + 1 };
+
 struct drawing {
     const awt_groom *groom;
     awt_groom_info info;
     float *centres, *frames; /* [finest_nodes][3], [finest_nodes][4] */
-    float *points;           /* [strand_count][points_per_strand][3] */
-    bool guides_made, points_made;
-    uint64_t guides_at, points_at; /* sub-steps that the forest had made when they were brought up to date */
-    bool *moved;                   /* [wisp_count[0]]: working memory */
+    bool guides_made;
+    uint64_t guides_at; /* likewise */
+    drawn_level levels[LEVELS];
+    bool *moved; /* [wisp_count[0]]: working memory */
     float *strand_scratch;
     awt_node *nodes; /* [finest_nodes] */
     uint64_t held;   /* bytes of the arrays */
@@ -82,7 +91,9 @@ void drawing_destroy(drawing *d)
     }
     free(d->centres);
     free(d->frames);
-    free(d->points);
+    for (int i = 0; i < LEVELS; i++) {
+        free(d->levels[i].points);
+    }
     free(d->moved);
     free(d->strand_scratch);
     free(d->nodes);
@@ -125,28 +136,29 @@ static void take_guides(const drawing_job *j)
     d->guides_at = awt_forest_sub_steps(j->forest);
 }
 
-/* Brings guides and strands up to date. */
-static awt_status take_strands(const drawing_job *j)
+/* Brings guides, and the strands of the form's level, up to date. */
+static awt_status take_strands(const drawing_job *j, int form)
 {
     drawing *d = j->d;
+    const geom_layout *layout = d->forms[form].layout;
+    drawn_level *level = &d->levels[form_at(form)->level];
     const bool *moved = NULL;
     if (!d->strand_scratch) {
         d->strand_scratch = take_memory(d, awt_groom_strand_scratch(d->groom), sizeof(float));
     }
-    if (!d->points) {
-        d->points = take_memory(d, (uint64_t)d->info.strand_count * d->info.points_per_strand, 3 * sizeof(float));
+    if (!level->points) {
+        const uint64_t points = (uint64_t)geom_layout_strands(layout) * d->info.points_per_strand;
+        level->points = take_memory(d, points, 3 * sizeof(float));
     }
-    if (!d->strand_scratch || !d->points) {
+    if (!d->strand_scratch || !level->points) {
         return error_set(j->error, AWT_NO_MEMORY, NULL);
     }
     take_guides(j);
-    if (!d->points_made) {
-        awt_groom_strands(d->groom, d->centres, d->frames, d->strand_scratch, d->points);
-    } else if ((moved = find_moved(j, d->points_at)) != NULL) {
-        awt_groom_strands_of(d->groom, moved, d->centres, d->frames, d->strand_scratch, d->points);
+    if (!level->made || (moved = find_moved(j, level->made_at)) != NULL) {
+        geom_layout_evaluate(layout, d->groom, moved, d->centres, d->frames, d->strand_scratch, level->points);
     }
-    d->points_made = true;
-    d->points_at = awt_forest_sub_steps(j->forest);
+    level->made = true;
+    level->made_at = awt_forest_sub_steps(j->forest);
     return AWT_OK;
 }
 
@@ -184,7 +196,7 @@ static const kept_frame *keep_frame(const drawing_job *j, int form)
         return before;
     }
     kept_frame *now = drawn_form_oldest(f, j->error);
-    const geom_quantise_def def = {.points = j->d->points,
+    const geom_quantise_def def = {.points = j->d->levels[form_at(form)->level].points,
                                    .unchanged = before->sequence ? find_unchanged(j, form, before->made_at) : NULL,
                                    .previous = before->numbers};
     if (!now || geom_quantise(f->layout, &def, now->numbers, &now->clamped_points, j->error) != AWT_OK) {
@@ -199,7 +211,7 @@ static awt_status draw_whole(const drawing_job *j, const kept_frame *kept, view 
     const drawing *d = j->d;
     drawn_form *f = &j->d->forms[v->name.form];
     const bool guides = form_at(v->name.form)->kind == GEOM_GUIDES;
-    const geom_frame_def def = {.points = guides ? d->centres : d->points,
+    const geom_frame_def def = {.points = guides ? d->centres : d->levels[form_at(v->name.form)->level].points,
                                 .frames = guides ? d->frames : NULL,
                                 .quantised = kept ? kept->numbers : NULL,
                                 .head = awt_forest_head(j->forest),
@@ -232,14 +244,13 @@ static awt_status draw_delta(const drawing_job *j, const kept_frame *base, const
  */
 static awt_status prepare(const drawing_job *j, int form, const kept_frame **kept)
 {
-    awt_status status = AWT_OK;
+    awt_status status = drawn_form_use(&j->d->forms[form], j->d->groom, form, j->error);
     *kept = NULL;
-    if (form_at(form)->kind == GEOM_GUIDES) {
+    if (status == AWT_OK && form_at(form)->kind == GEOM_GUIDES) {
         take_guides(j);
-    } else {
-        status = take_strands(j);
+    } else if (status == AWT_OK) {
+        status = take_strands(j, form);
     }
-    status = status == AWT_OK ? drawn_form_use(&j->d->forms[form], j->d->groom, form, j->error) : status;
     if (status == AWT_OK && form_at(form)->has_deltas && j->wanted->keeps[form]) {
         *kept = keep_frame(j, form);
         status = *kept ? AWT_OK : j->error->status;

@@ -3,16 +3,17 @@
 #include "base/assert.h"
 #include "geom/read.h"
 
-enum { LEVEL_FULL = 0 };
-
-/* A form's poorer one stands behind it. */
 static const struct {
     frame_form it;
     const char *name;
-} table[FORM_COUNT] = {{{GEOM_RIBBON, LEVEL_FULL, false, 1}, "ribbon/full"},
-                       {{GEOM_STRANDS, LEVEL_FULL, true, 2}, "strands/full"},
-                       {{GEOM_GUIDES, LEVEL_FULL, false, FORM_NONE}, "guides/full"},
-                       {{GEOM_NODES, LEVEL_FULL, false, FORM_NONE}, "nodes/full"}};
+} table[FORM_COUNT] = {{{GEOM_RIBBON, GEOM_LEVEL_FULL, false, 1}, "ribbon/full"},
+                       {{GEOM_RIBBON, GEOM_LEVEL_FIFTH, false, 2}, "ribbon/fifth"},
+                       {{GEOM_RIBBON, GEOM_LEVEL_GUIDES, false, FORM_NONE}, "ribbon/guides"},
+                       {{GEOM_STRANDS, GEOM_LEVEL_FULL, true, 4}, "strands/full"},
+                       {{GEOM_STRANDS, GEOM_LEVEL_FIFTH, true, 5}, "strands/fifth"},
+                       {{GEOM_STRANDS, GEOM_LEVEL_GUIDES, true, FORM_NONE}, "strands/guides"},
+                       {{GEOM_GUIDES, GEOM_LEVEL_FULL, false, FORM_NONE}, "guides/full"},
+                       {{GEOM_NODES, GEOM_LEVEL_FULL, false, FORM_NONE}, "nodes/full"}};
 
 const frame_form *form_at(int number)
 {

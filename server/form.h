@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { FORM_COUNT = 4, FORM_NONE = -1 };
+enum { FORM_COUNT = 8, FORM_NONE = -1 };
 
 /* Numbers of QUERY's `kind` and `level`. */
 enum { FORM_KIND_GREATEST = 3 /* ribbon, strands, guides, nodes */, FORM_LEVEL_GREATEST = 2 /* full, fifth, guides */ };
@@ -15,7 +15,7 @@ typedef struct frame_form {
     uint8_t kind; /* a geom_kind */
     uint8_t level;
     bool has_deltas;
-    int poorer; /* the form of fewer bytes that takes its place within a budget; FORM_NONE: there is none */
+    int poorer; /* the coarser level of this kind, which takes its place within a budget; FORM_NONE: there is none */
 } frame_form;
 
 const frame_form *form_at(int number);

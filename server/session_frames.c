@@ -14,7 +14,7 @@ static int find_form(session *s, const proto_message *message, uint8_t kind, uin
     int found = form_find(kind, level);
     if (found == FORM_NONE) {
         session_error(s, message->type, message->request, PROTO_ERROR_NOT_SUPPORTED,
-                      "this daemon makes no frames of kind %u at level %u; level 0 (full) is there of every kind",
+                      "there are no frames of kind %u at level %u; guides and nodes have level 0 (full) alone",
                       (unsigned)kind, (unsigned)level);
     }
     return found;

@@ -278,6 +278,7 @@ TEST(e2e_bad_requests_get_numbered_errors_and_the_connection_goes_on)
     CHECK_INT(error.code, PROTO_ERROR_BAD_TIME);
     query.request = 0;
     query.as.query.time_us = time_us + 1000;
+    query.as.query.kind = 3;
     query.as.query.level = 1;
     CHECK(!awtclient_call(bystander, &query, &answer, &error));
     CHECK_INT(error.code, PROTO_ERROR_NOT_SUPPORTED);

@@ -158,8 +158,8 @@ TEST(server_stream_refuses_forms_it_does_not_make)
     static const struct {
         uint8_t kind, level;
         int code;
-    } asked[] = {{0, 1, PROTO_ERROR_NOT_SUPPORTED},
-                 {0, 2, PROTO_ERROR_NOT_SUPPORTED},
+    } asked[] = {{2, 1, PROTO_ERROR_NOT_SUPPORTED},
+                 {2, 2, PROTO_ERROR_NOT_SUPPORTED},
                  {3, 1, PROTO_ERROR_NOT_SUPPORTED},
                  {4, 0, PROTO_ERROR_BAD_VALUE},
                  {0, 3, PROTO_ERROR_BAD_VALUE}};

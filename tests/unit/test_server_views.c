@@ -150,6 +150,22 @@ TEST(server_views_of_every_kind_show_the_same_step_without_another)
     }
     CHECK_U64(s.shared.counters.frames_encoded, encoded + 3);
     geom_nodes_fini(&got);
+    const uint32_t strands = shown[0].strand_count;
+    for (uint8_t level = 1; level <= FORM_LEVEL_GREATEST; level++) {
+        proto_message query = fake_query(s.forest, 0);
+        query.as.query.latest = 1;
+        query.as.query.kind = GEOM_STRANDS;
+        query.as.query.level = level;
+        CHECK(fake_send(s.client, &query));
+        fake_work(&s.shared, s.client);
+        const struct proto_frame *frame = &fake_expect(s.client, PROTO_FRAME)->as.frame;
+        geom_strands coarser = receive(NULL, frame);
+        CHECK_INT(frame->level, level);
+        CHECK_INT(coarser.level, level);
+        CHECK_INT(coarser.full_strand_count, shown[0].strand_count);
+        CHECK(level == 1 ? coarser.strand_count < strands : coarser.strand_count > 0);
+        geom_strands_fini(&coarser);
+    }
     for (int i = 0; i < 3; i++) {
         geom_strands_fini(&shown[i]);
     }

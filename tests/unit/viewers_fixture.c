@@ -52,7 +52,7 @@ static void decode(viewers *v, viewer *w, const struct proto_frame *frame)
     CHECK_TEXT(error.text, "");
     w->fresh = true;
     const geom_strands *truth = &v->truth[frame->sequence % VIEWERS_FRAMES];
-    if (truth->positions && w->shown.positions) {
+    if (truth->positions && w->shown.positions && frame->level == 0) {
         const size_t size = (size_t)truth->strand_count * truth->points_per_strand * 3 * sizeof(float);
         CHECK_INT(truth->time_us, w->shown.time_us);
         CHECK(memcmp(truth->positions, w->shown.positions, size) == 0);
@@ -110,7 +110,11 @@ void viewers_init(viewers *v, uint32_t count, const struct proto_subscribe *aske
     CHECK(v->each && v->links && fake_service_init(&v->shared, 0, 4, false));
     CHECK_INT(geom_delta_reader_create(&v->reader, NULL), AWT_OK);
     v->driver = fake_client_open(&v->shared);
-    const struct proto_create_reply made = fake_make_forest(&v->shared, v->driver, 1);
+    proto_message create = fake_create(1);
+    create.as.create.strands = 400; /* so that a fifth of them are more than the finest wisps */
+    CHECK(fake_send(v->driver, &create));
+    fake_work(&v->shared, v->driver);
+    const struct proto_create_reply made = fake_expect(v->driver, PROTO_CREATE_REPLY)->as.create_reply;
     v->forest = made.forest;
     for (uint32_t i = 0; i < count; i++) {
         viewers_link *l = &v->links[i / LIMIT_SESSION_SUBSCRIPTIONS];
@@ -193,8 +197,12 @@ void viewers_acknowledge(viewers *v, uint32_t number)
     }
     const size_t positions = (size_t)w->shown.strand_count * w->shown.points_per_strand * 3;
     geom_strands *place = &w->kept[w->oldest].strands;
-    float *points = place->positions ? place->positions : malloc(positions * sizeof(float));
-    float *widths = place->widths ? place->widths : malloc(w->shown.points_per_strand * sizeof(float));
+    const bool fits = place->positions && place->strand_count == w->shown.strand_count;
+    if (!fits) {
+        geom_strands_fini(place);
+    }
+    float *points = fits ? place->positions : malloc(positions * sizeof(float));
+    float *widths = fits ? place->widths : malloc(w->shown.points_per_strand * sizeof(float));
     CHECK(points && widths);
     memcpy(points, w->shown.positions, positions * sizeof(float));
     memcpy(widths, w->shown.widths, w->shown.points_per_strand * sizeof(float));
