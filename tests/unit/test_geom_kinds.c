@@ -202,13 +202,13 @@ TEST(geom_every_pose_and_time_comes_back_to_the_bit)
     geom_fixture_fini(&f);
 }
 
-static void check_cut_and_damaged(geom_kind kind)
+static void check_cut_and_damaged(geom_kind kind, uint32_t attributes)
 {
     geom_fixture f;
     rng random = rng_seed(32);
     int read = 0;
     geom_fixture_init(&f, 24, 8, 2);
-    geom_fixture_layout(&f, &(geom_layout_def){.kind = kind});
+    geom_fixture_layout(&f, &(geom_layout_def){.kind = kind, .attributes = attributes});
     geom_fixture_encode(&f, NULL);
     unsigned char *copy = malloc(f.frame.size);
     for (size_t size = 12; size < f.frame.size; size++) { /* with a header that agrees */
@@ -240,6 +240,7 @@ static void check_cut_and_damaged(geom_kind kind)
 
 TEST(geom_frames_of_both_kinds_cut_short_or_damaged_do_no_harm)
 {
-    check_cut_and_damaged(GEOM_RIBBON);
-    check_cut_and_damaged(GEOM_STRANDS);
+    check_cut_and_damaged(GEOM_RIBBON, 0);
+    check_cut_and_damaged(GEOM_STRANDS, 0);
+    check_cut_and_damaged(GEOM_STRANDS, GEOM_ATTRIBUTE_STRAND | GEOM_ATTRIBUTE_WIDTH);
 }
