@@ -90,12 +90,13 @@ $(LIBAWT) $(LIBPROTO) $(LIBCLIENT) $(LIBSERVER):
 	$(Q)$(AR) rcs $@ $^
 
 # The receiver (core/geom/receive.h) for systems without POSIX: nothing but standard C may be in it.
-SRC_receiver := $(patsubst %,core/%.c,base/arena base/error geom/binding geom/draco_extra geom/draco_read geom/glb geom/glb_container \
-	geom/guides geom/json geom/json_number geom/lines geom/nodes_read geom/numbers geom/quantise geom/rans geom/receive geom/symbols_read geom/topology \
-	sim/evaluate) tests/node/receiver.c
+SRC_receiver := $(patsubst %,core/%.c,base/arena base/crc32c base/error geom/binding geom/cloud_read geom/delta \
+	geom/delta_checksum geom/delta_glb_read geom/delta_reader geom/draco_extra geom/draco_read geom/glb geom/glb_container geom/guides geom/json \
+	geom/json_number geom/lines geom/nodes_read geom/numbers geom/quantise geom/rans geom/receive geom/receive_delta \
+	geom/symbols_read geom/topology sim/evaluate) tests/node/receiver.c
 CFLAGS_receiver := -std=c17 -O2 -ffp-contract=off -fno-math-errno $(WARN) -Wmissing-prototypes -Icore
-EXPORTS_receiver := malloc free receiver_binding receiver_frame receiver_positions receiver_strands receiver_points \
-	receiver_error
+EXPORTS_receiver := malloc free receiver_binding receiver_frame receiver_numbers receiver_positions receiver_strands \
+	receiver_points receiver_error
 MINGW_CC ?= x86_64-w64-mingw32-gcc
 EMCC ?= emcc
 $(B)/receiver.dll: $(SRC_receiver) $(HEADERS)

@@ -9,7 +9,7 @@ enum { PLACES = LIMIT_DELTA_BASES + 1 };
 awt_status drawn_form_use(drawn_form *f, const awt_groom *groom, int number, awt_error *error)
 {
     const frame_form *form = form_at(number);
-    const geom_layout_def def = {.kind = form->kind, .level = form->level, .bound = form->kind == GEOM_GUIDES};
+    const geom_layout_def def = {.kind = form->kind, .level = form->level};
     awt_status status = f->layout ? AWT_OK : geom_layout_create(groom, &def, &f->layout, error);
     if (status == AWT_OK && !f->scratch) {
         status = geom_scratch_create(f->layout, &f->scratch, error);

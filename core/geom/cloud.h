@@ -14,6 +14,9 @@
 
 enum { CLOUD_HEAD_BYTES = 25 };
 
+/* All that stands before the symbols' data. */
+void cloud_head(uint32_t points, uint32_t components, unsigned char head[CLOUD_HEAD_BYTES]);
+
 /* One cloud on its way out. */
 typedef struct cloud_job {
     uint32_t points, components; /* points 0: a job that is not used */

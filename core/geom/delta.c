@@ -135,6 +135,59 @@ uint8_t delta_make(const delta_shape *shape, const uint16_t *base, const uint16_
     return carry;
 }
 
+/* ---- plain numbers */
+
+static void fill_plain(const uint16_t *restrict base, const uint16_t *restrict now, size_t count, int spare_bits,
+                       uint16_t *restrict symbols)
+{
+    for (size_t i = 0; i < count; i++) {
+        symbols[i] = symbol_of(now[i] - (base ? base[i] : 0), spare_bits);
+    }
+}
+
+/* About how many bits these take: of each as many as it has. */
+static uint64_t weigh(const uint16_t *symbols, size_t count)
+{
+    uint64_t bits = 0;
+    for (size_t i = 0; i < count; i++) {
+        for (int power = 0; power < DELTA_MAX_BITS; power++) {
+            bits += symbols[i] >= 1u << power;
+        }
+    }
+    return bits;
+}
+
+bool delta_make_plain(const delta_shape *shape, const uint16_t *base, const uint16_t *now, uint16_t *symbols,
+                      uint16_t *all)
+{
+    const size_t count = delta_count(shape);
+    const int spare_bits = 16 - shape->bits;
+    uint64_t changes = UINT64_MAX;
+    if (base) {
+        fill_plain(base, now, count, spare_bits, symbols);
+        changes = weigh(symbols, count);
+    }
+    fill_plain(NULL, now, count, spare_bits, symbols);
+    const bool whole = !base || weigh(symbols, count) <= changes;
+    if (!whole) {
+        fill_plain(base, now, count, spare_bits, symbols);
+    }
+    *all = or_all(symbols, count);
+    return whole;
+}
+
+static void apply_plain(const uint16_t *restrict symbols, const uint16_t *restrict base, size_t count, int bits,
+                        uint16_t *restrict now)
+{
+    const int32_t mask = (1 << bits) - 1;
+    for (size_t i = 0; i < count; i++) {
+        const int32_t symbol = symbols[i];
+        now[i] = (uint16_t)(((base ? base[i] : 0) + ((symbol >> 1) ^ -(symbol & 1))) & mask);
+    }
+}
+
+/* ---- the way back */
+
 static inline void apply(const delta_shape *shape, size_t step, int32_t carry, const uint16_t *restrict symbols,
                          const uint16_t *restrict base, int16_t *restrict d, uint16_t *restrict now)
 {
@@ -159,6 +212,10 @@ static inline void apply(const delta_shape *shape, size_t step, int32_t carry, c
 void delta_apply(const delta_shape *shape, uint8_t carry, const uint16_t *symbols, const uint16_t *base,
                  int16_t *changes, uint16_t *now)
 {
+    if (carry == DELTA_PLAIN) {
+        apply_plain(symbols, base, delta_count(shape), shape->bits, now);
+        return;
+    }
     int16_t *d = changes + delta_before(shape);
     memset(changes, 0, delta_before(shape) * sizeof *changes);
     if (shape->components == 3) { /* which the compiler makes a loop of its own of */

@@ -1,5 +1,5 @@
 /* delta_glb.h: the GLB around a delta's block: a node with the head's pose, and the block in a bufferView that the
- * node's extension AWT_strands_delta names. */
+ * node's extension AWT_delta names. */
 #ifndef GEOM_DELTA_GLB_H
 #define GEOM_DELTA_GLB_H
 

@@ -34,15 +34,9 @@ typedef struct encoding {
     awt_error *error;
 } encoding;
 
-static delta_shape shape_of(const geom_layout *layout, uint32_t strands)
-{
-    return (delta_shape){
-        .strands = strands, .points = layout->points_per_strand, .components = 3, .bits = layout->box.bits};
-}
-
 awt_status delta_scratch_create(const geom_layout *layout, delta_scratch **out, awt_error *error)
 {
-    const delta_shape largest = shape_of(layout, layout->largest_patch);
+    const delta_shape largest = quantised_shape(layout, layout->largest_patch);
     const size_t changes = (delta_before(&largest) + delta_room(&largest)) * sizeof(int16_t);
     const size_t changed = layout->patch_count * sizeof(uint32_t);
     *out = NULL;
@@ -55,7 +49,7 @@ awt_status delta_scratch_create(const geom_layout *layout, delta_scratch **out, 
     made->held = sizeof *made + changes + changed;
     awt_status status = made->changes && made->changed ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
     if (status == AWT_OK) {
-        status = cloud_writer_create(delta_room(&largest), layout->box.bits, &made->writer, error);
+        status = cloud_writer_create(delta_room(&largest), largest.bits, &made->writer, error);
     }
     if (status != AWT_OK) {
         delta_scratch_destroy(made);
@@ -84,7 +78,7 @@ size_t delta_scratch_bytes(const delta_scratch *scratch)
 static bool is_same(const encoding *e, uint32_t index)
 {
     const geom_quantised *base = e->def->base, *now = e->def->now;
-    const delta_shape shape = shape_of(e->layout, e->layout->patches[index].strands);
+    const delta_shape shape = quantised_shape(e->layout, e->layout->patches[index].strands);
     return base->checksums[index] == now->checksums[index] &&
            memcmp(quantised_patch(base, e->layout, index), quantised_patch(now, e->layout, index),
                   delta_count(&shape) * sizeof(uint16_t)) == 0;
@@ -93,7 +87,7 @@ static bool is_same(const encoding *e, uint32_t index)
 static void list_changed(encoding *e)
 {
     for (uint32_t i = 0; i < e->layout->patch_count; i++) {
-        if (!is_same(e, i)) {
+        if (!e->def->base || !is_same(e, i)) {
             e->scratch->changed[e->patches++] = i;
         }
     }
@@ -104,21 +98,25 @@ static awt_status begin_block(encoding *e)
 {
     const geom_layout *layout = e->layout;
     const size_t size = DELTA_HEADER_BYTES + (size_t)e->patches * DELTA_ENTRY_BYTES;
+    const delta_shape shape = quantised_shape(layout, layout->strands);
+    const draco_box box = quantised_box(layout);
+    const geom_delta_def *def = e->def;
     unsigned char *at;
     delta_header header = {.magic = DELTA_MAGIC,
                            .version = DELTA_VERSION,
                            .kind = (uint8_t)layout->kind,
-                           .components = 3,
-                           .bits = (uint8_t)layout->box.bits,
-                           .base_sequence = e->def->base_sequence,
-                           .sequence = e->def->sequence,
-                           .base_checksum = e->def->base->checksum,
-                           .checksum = e->def->now->checksum,
+                           .components = (uint8_t)shape.components,
+                           .bits = (uint8_t)shape.bits,
+                           .base_sequence = def->base_sequence,
+                           .sequence = def->sequence,
+                           .base_checksum = def->base ? def->base->checksum : 0,
+                           .checksum = def->now->checksum,
                            .strands = layout->strands,
                            .points_per_strand = layout->points_per_strand,
-                           .origin = {layout->box.origin[0], layout->box.origin[1], layout->box.origin[2]},
-                           .range = layout->box.range,
-                           .patches = e->patches};
+                           .origin = {box.origin[0], box.origin[1], box.origin[2]},
+                           .range = box.range,
+                           .patches = e->patches,
+                           .binding = quantised_binding(layout)};
     e->block = e->out->size;
     awt_status status = geom_buffer_extend(e->out, size, &at, e->error);
     if (status == AWT_OK) {
@@ -128,8 +126,14 @@ static awt_status begin_block(encoding *e)
     return status;
 }
 
+/* How a patch's numbers are said. */
+typedef struct manner {
+    uint8_t carry;
+    bool whole;
+} manner;
+
 /* A cloud, and its entry in the table, number `place`. */
-static awt_status put_patch(encoding *e, uint32_t place, uint8_t carry, const cloud_job *job, int lane)
+static awt_status put_patch(encoding *e, uint32_t place, manner how, const cloud_job *job, int lane)
 {
     const geom_patch *patch = &e->layout->patches[e->scratch->changed[place]];
     unsigned char *at;
@@ -138,8 +142,11 @@ static awt_status put_patch(encoding *e, uint32_t place, uint8_t carry, const cl
         return status;
     }
     cloud_writer_put(e->scratch->writer, job, lane, at);
-    delta_entry entry = {
-        .first_strand = patch->first_strand, .strands = patch->strands, .size = (uint32_t)job->size, .carry = carry};
+    delta_entry entry = {.first_strand = patch->first_strand,
+                         .strands = patch->strands,
+                         .size = (uint32_t)job->size,
+                         .carry = how.carry,
+                         .whole = how.whole};
     codec writing = codec_writing(e->out->bytes + e->block + DELTA_HEADER_BYTES + (size_t)place * DELTA_ENTRY_BYTES,
                                   DELTA_ENTRY_BYTES);
     delta_entry_walk(&writing, &entry);
@@ -159,29 +166,52 @@ static uint32_t alphabet_of(uint16_t all)
     return alphabet;
 }
 
+/* The symbols of patch number `index`, which become cloud number `lane`. */
+static manner make_symbols(encoding *e, uint32_t index, int lane, cloud_job *job)
+{
+    const geom_layout *layout = e->layout;
+    const delta_shape shape = quantised_shape(layout, layout->patches[index].strands);
+    const uint16_t *base = e->def->base ? quantised_patch(e->def->base, layout, index) : NULL;
+    const uint16_t *now = quantised_patch(e->def->now, layout, index);
+    uint16_t *symbols = cloud_writer_symbols(e->scratch->writer, lane), all;
+    manner how = {.carry = DELTA_PLAIN};
+    if (layout->kind == GEOM_GUIDES) {
+        how.whole = delta_make_plain(&shape, base, now, symbols, &all);
+    } else {
+        how.carry = delta_make(&shape, base, now, e->scratch->changes, symbols, &all);
+    }
+    *job = (cloud_job){
+        .points = shape.strands * shape.points, .components = shape.components, .alphabet = alphabet_of(all)};
+    return how;
+}
+
 /* Patches number `first` and the next few of those that changed. */
 static awt_status put_patches(encoding *e, uint32_t first)
 {
-    const geom_layout *layout = e->layout;
     cloud_job jobs[RANS_LANES] = {{0}};
-    uint8_t carries[RANS_LANES];
+    manner manners[RANS_LANES];
     int count = 0;
     for (; count < RANS_LANES && first + (uint32_t)count < e->patches; count++) {
-        const uint32_t index = e->scratch->changed[first + (uint32_t)count];
-        const delta_shape shape = shape_of(layout, layout->patches[index].strands);
-        uint16_t all;
-        carries[count] = delta_make(&shape, quantised_patch(e->def->base, layout, index),
-                                    quantised_patch(e->def->now, layout, index), e->scratch->changes,
-                                    cloud_writer_symbols(e->scratch->writer, count), &all);
-        jobs[count] = (cloud_job){
-            .points = shape.strands * shape.points, .components = shape.components, .alphabet = alphabet_of(all)};
+        manners[count] = make_symbols(e, e->scratch->changed[first + (uint32_t)count], count, &jobs[count]);
     }
     cloud_writer_run(e->scratch->writer, jobs, e->def->measure);
     awt_status status = AWT_OK;
     for (int k = 0; k < count && status == AWT_OK; k++) {
-        status = put_patch(e, first + (uint32_t)k, carries[k], &jobs[k], k);
+        status = put_patch(e, first + (uint32_t)k, manners[k], &jobs[k], k);
     }
     return status;
+}
+
+/* Guides alone come whole this way: strands have a better one (geom_encode). */
+static awt_status check_def(const geom_layout *layout, const geom_delta_def *def, awt_error *error)
+{
+    if (!quantised_fits(def->now, layout) || (def->base && !quantised_fits(def->base, layout))) {
+        return error_set(error, AWT_BAD_VALUE, "the whole numbers are none of this layout's");
+    }
+    if (layout->kind == GEOM_GUIDES ? !def->base != !def->base_sequence : !def->base) {
+        return error_set(error, AWT_BAD_VALUE, "a delta has a base and its sequence, or of guides neither");
+    }
+    return AWT_OK;
 }
 
 awt_status geom_encode_delta(const geom_layout *layout, geom_scratch *scratch, const geom_delta_def *def,
@@ -189,10 +219,13 @@ awt_status geom_encode_delta(const geom_layout *layout, geom_scratch *scratch, c
 {
     encoding e = {.layout = layout, .scratch = geom_scratch_delta(scratch), .def = def, .out = out, .error = error};
     awt_pose head;
-    if (!e.scratch || !quantised_fits(def->base, layout) || !quantised_fits(def->now, layout)) {
-        return error_set(error, AWT_BAD_VALUE, "the whole numbers are none of this layout's");
+    if (!e.scratch) {
+        return error_set(error, AWT_BAD_VALUE, "frames of this layout have no deltas");
     }
-    awt_status status = head_pose_take(&def->head, &head, error);
+    awt_status status = check_def(layout, def, error);
+    if (status == AWT_OK) {
+        status = head_pose_take(&def->head, &head, error);
+    }
     if (status == AWT_OK) {
         list_changed(&e);
         status = delta_glb_begin(&head, def->time_us, out, error);

@@ -6,9 +6,8 @@
 
 /* What the vertices of a mesh have. */
 typedef enum draco_form {
-    DRACO_POSITIONS,       /* a position, quantised, predicted by difference */
-    DRACO_POSITIONS_TURNS, /* the same, and three 16-bit numbers, predicted by difference */
-    DRACO_OFFSETS_TURNS    /* twice three 16-bit numbers as they are: who writes them has predicted them better */
+    DRACO_POSITIONS,      /* a position, quantised, predicted by difference */
+    DRACO_POSITIONS_TURNS /* the same, and three 16-bit numbers, predicted by difference */
 } draco_form;
 
 typedef struct draco_attributes {
@@ -16,10 +15,7 @@ typedef struct draco_attributes {
     int turn_bits; /* of DRACO_POSITIONS_TURNS: the numbers lie in -2^(turn_bits-1) .. 2^(turn_bits-1) - 1 */
 } draco_attributes;
 
-enum {
-    DRACO_MAX_TURN_BITS = 15,
-    DRACO_NUMBER_MOST = 16383 /* either way, of a number that is written as it is */
-};
+enum { DRACO_MAX_TURN_BITS = 15 };
 
 /* "DRACO", bitstream 2.2, triangular mesh, sequential, no flags: what libdraco 1.3 to 1.5 write. */
 static const unsigned char DRACO_HEADER[11] = {'D', 'R', 'A', 'C', 'O', 2, 2, 1, 0, 0, 0};
@@ -27,12 +23,8 @@ static const unsigned char DRACO_HEADER[11] = {'D', 'R', 'A', 'C', 'O', 2, 2, 1,
 static const unsigned char DRACO_POSITION[8] = {1, 1, 0, 9, 3, 0, 0, 2};
 /* The same with a second attribute: generic, int16, 3 components, not normalised, unique id 1, whole numbers. */
 static const unsigned char DRACO_POSITION_TURN[14] = {1, 2, 0, 9, 3, 0, 0, 4, 3, 3, 0, 1, 2, 1};
-/* Two of these, with ids 0 and 1. */
-static const unsigned char DRACO_OFFSET_TURN[14] = {1, 2, 4, 3, 3, 0, 0, 4, 3, 3, 0, 1, 1, 1};
 /* Prediction by difference, wrapped; then: symbols, not plain numbers. */
 static const unsigned char DRACO_DIFFERENCES[3] = {0, 1, 1};
-/* No prediction; symbols. */
-static const unsigned char DRACO_PLAIN[2] = {0xfe, 1};
 
 enum {
     DRACO_INDICES_COMPRESSED = 0,

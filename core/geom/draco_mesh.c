@@ -32,10 +32,6 @@ static unsigned char *put_counts(unsigned char *at, const draco_mesh *mesh)
 /* Which attributes there are, and how the first one is predicted. */
 static unsigned char *put_attributes(unsigned char *at, draco_form form)
 {
-    if (form == DRACO_OFFSETS_TURNS) {
-        return store_bytes(store_bytes(at, DRACO_OFFSET_TURN, sizeof DRACO_OFFSET_TURN), DRACO_PLAIN,
-                           sizeof DRACO_PLAIN);
-    }
     at = form == DRACO_POSITIONS ? store_bytes(at, DRACO_POSITION, sizeof DRACO_POSITION)
                                  : store_bytes(at, DRACO_POSITION_TURN, sizeof DRACO_POSITION_TURN);
     return store_bytes(at, DRACO_DIFFERENCES, sizeof DRACO_DIFFERENCES);

@@ -200,7 +200,7 @@ bool draco_read(draco_reader *reader, uint32_t extra, const void *bytes, size_t 
            fill_positions(&box, reader->symbols, vertices, positions);
 }
 
-/* ---- numbers */
+/* ---- turns */
 
 /* Differences of `bits` bits. */
 static bool take_turns(draco_reader *reader, cursor *c, int bits, uint32_t vertices, int16_t *turns)
@@ -212,34 +212,17 @@ static bool take_turns(draco_reader *reader, cursor *c, int bits, uint32_t verti
            greatest == reach - 1 && numbers_sum_up(bits, reader->numbers, vertices, turns);
 }
 
-static bool take_plain(draco_reader *reader, cursor *c, uint32_t vertices, int16_t *numbers)
-{
-    bool taken = take_exactly(c, DRACO_PLAIN, sizeof DRACO_PLAIN) && take_symbols(reader, c, reader->numbers, vertices);
-    if (taken) {
-        numbers_of_plain(reader->numbers, vertices, numbers);
-    }
-    return taken;
-}
-
-bool draco_read_numbers(draco_reader *reader, const draco_attributes *attributes, const void *bytes, size_t size,
-                        const uint16_t *indices, uint32_t vertices, uint32_t triangles, float *positions,
-                        int16_t *offsets, int16_t *turns)
+bool draco_read_turns(draco_reader *reader, int turn_bits, const void *bytes, size_t size, const uint16_t *indices,
+                      uint32_t vertices, uint32_t triangles, float *positions, int16_t *turns)
 {
     cursor c = {.at = bytes, .end = (const unsigned char *)bytes + size};
     const unsigned char *after_counts;
     draco_box box;
     int32_t least, greatest;
-    if (!take_mesh(reader, &c, indices, vertices, triangles, &after_counts)) {
-        return false;
-    }
-    if (attributes->form == DRACO_OFFSETS_TURNS) {
-        return take_exactly(&c, DRACO_OFFSET_TURN, sizeof DRACO_OFFSET_TURN) &&
-               take_plain(reader, &c, vertices, offsets) && take_plain(reader, &c, vertices, turns) &&
-               take_zeros(&c, after_counts, triangles);
-    }
-    return take_exactly(&c, DRACO_POSITION_TURN, sizeof DRACO_POSITION_TURN) &&
+    return take_mesh(reader, &c, indices, vertices, triangles, &after_counts) &&
+           take_exactly(&c, DRACO_POSITION_TURN, sizeof DRACO_POSITION_TURN) &&
            take_exactly(&c, DRACO_DIFFERENCES, sizeof DRACO_DIFFERENCES) &&
            take_symbols(reader, &c, reader->symbols, vertices) && take_bounds(&c, &least, &greatest) && least == 0 &&
-           take_turns(reader, &c, attributes->turn_bits, vertices, turns) && take_box(&c, greatest, &box) &&
+           take_turns(reader, &c, turn_bits, vertices, turns) && take_box(&c, greatest, &box) &&
            take_zeros(&c, after_counts, triangles) && fill_positions(&box, reader->symbols, vertices, positions);
 }

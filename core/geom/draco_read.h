@@ -21,10 +21,8 @@ void draco_reader_destroy(draco_reader *reader);
 bool draco_read(draco_reader *reader, uint32_t extra, const void *bytes, size_t size, const uint16_t *indices,
                 uint32_t vertices, uint32_t triangles, float *positions);
 
-/* The same of a mesh with numbers. Of `positions` and `offsets` [vertices][3] that which the form has is filled, the
- * other is not touched; `turns` [vertices][3] hold numbers of `attributes`. */
-bool draco_read_numbers(draco_reader *reader, const draco_attributes *attributes, const void *bytes, size_t size,
-                        const uint16_t *indices, uint32_t vertices, uint32_t triangles, float *positions,
-                        int16_t *offsets, int16_t *turns);
+/* The same of a mesh with turns [vertices][3] of `turn_bits` bits beside its positions. */
+bool draco_read_turns(draco_reader *reader, int turn_bits, const void *bytes, size_t size, const uint16_t *indices,
+                      uint32_t vertices, uint32_t triangles, float *positions, int16_t *turns);
 
 #endif

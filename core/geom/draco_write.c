@@ -71,8 +71,7 @@ awt_status draco_writer_create(uint32_t most_vertices, int bits, symbols_scheme 
     }
     for (int k = 0; made && k < RANS_LANES; k++) {
         made =
-            make_lane(writer, most_vertices, form == DRACO_OFFSETS_TURNS ? NUMBER_BITS : bits, scheme,
-                      &writer->lanes[k]) &&
+            make_lane(writer, most_vertices, bits, scheme, &writer->lanes[k]) &&
             (form == DRACO_POSITIONS || make_lane(writer, most_vertices, NUMBER_BITS, SYMBOLS_RAW, &writer->turns[k]));
     }
     if (!made) {
@@ -100,17 +99,9 @@ size_t draco_writer_bytes(const draco_writer *writer)
 
 static size_t size_of(const draco_mesh *mesh, size_t symbols_size)
 {
-    size_t size = mesh->head_size + symbols_size + mesh->tail_size;
-    switch (mesh->attributes.form) {
-    case DRACO_POSITIONS:
-        size += DRACO_BOUNDS_BYTES + DRACO_BOX_BYTES;
-        break;
-    case DRACO_POSITIONS_TURNS:
-        size += 2 * DRACO_BOUNDS_BYTES + DRACO_BOX_BYTES + sizeof DRACO_DIFFERENCES;
-        break;
-    case DRACO_OFFSETS_TURNS:
-        size += sizeof DRACO_PLAIN;
-        break;
+    size_t size = mesh->head_size + symbols_size + mesh->tail_size + DRACO_BOUNDS_BYTES + DRACO_BOX_BYTES;
+    if (mesh->attributes.form == DRACO_POSITIONS_TURNS) {
+        size += DRACO_BOUNDS_BYTES + sizeof DRACO_DIFFERENCES;
     }
     return size > mesh->least_size ? size : mesh->least_size;
 }
@@ -145,10 +136,8 @@ static void run_turns(draco_writer *writer, draco_job jobs[RANS_LANES], bool mea
         const draco_mesh *mesh = jobs[k].mesh;
         writer_lane *lane = &writer->turns[k];
         if (mesh && mesh->attributes.form != DRACO_POSITIONS) {
-            uint16_t greatest =
-                mesh->attributes.form == DRACO_OFFSETS_TURNS
-                    ? numbers_plain(jobs[k].turns, mesh->vertices, lane->symbols)
-                    : numbers_differences(mesh->attributes.turn_bits, jobs[k].turns, mesh->vertices, lane->symbols);
+            const uint16_t greatest =
+                numbers_differences(mesh->attributes.turn_bits, jobs[k].turns, mesh->vertices, lane->symbols);
             runs[k] = run_of(lane, SYMBOLS_RAW, mesh->vertices, alphabet_of(greatest), measure);
         }
     }
@@ -165,16 +154,11 @@ void draco_writer_run(draco_writer *writer, const draco_box *box, const quantise
     for (int k = 0; k < RANS_LANES; k++) {
         const draco_mesh *mesh = jobs[k].mesh;
         writer_lane *lane = &writer->lanes[k];
-        uint32_t alphabet = UINT32_C(1) << box->bits;
-        if (mesh && mesh->attributes.form == DRACO_OFFSETS_TURNS) {
-            alphabet = alphabet_of(numbers_plain(jobs[k].offsets, mesh->vertices, lane->symbols));
-        } else if (mesh) {
+        if (mesh) {
             jobs[k].found = jobs[k].numbers
                                 ? quantise_number_differences(box->bits, jobs[k].numbers, mesh->vertices, lane->symbols)
                                 : quantise_differences(box, bounds, jobs[k].positions, mesh->vertices, lane->symbols);
-        }
-        if (mesh) {
-            runs[k] = run_of(lane, writer->scheme, mesh->vertices, alphabet, measure);
+            runs[k] = run_of(lane, writer->scheme, mesh->vertices, UINT32_C(1) << box->bits, measure);
         }
     }
     symbols_write(runs);
@@ -198,9 +182,6 @@ static unsigned char *put_bounds(unsigned char *at, int32_t least, int32_t great
 
 static unsigned char *put_turns(unsigned char *at, const draco_attributes *attributes, const symbols_run *run)
 {
-    if (attributes->form == DRACO_OFFSETS_TURNS) {
-        return store_bytes(store_bytes(at, DRACO_PLAIN, sizeof DRACO_PLAIN), run->bytes, run->size);
-    }
     const int32_t reach = 1 << (attributes->turn_bits - 1);
     at = store_bytes(store_bytes(at, DRACO_DIFFERENCES, sizeof DRACO_DIFFERENCES), run->bytes, run->size);
     return put_bounds(at, -reach, reach - 1);
@@ -213,20 +194,16 @@ void draco_writer_put(const draco_writer *writer, const draco_box *box, const dr
     unsigned char *at = store_bytes(out, job->mesh->head, job->mesh->head_size);
     const symbols_run *run = &writer->lanes[lane].run;
     at = store_bytes(store_bytes(at, run->bytes, run->size), run->bits, run->bits_size);
-    if (attributes->form != DRACO_OFFSETS_TURNS) {
-        at = put_bounds(at, 0, (1 << box->bits) - 1);
-    }
+    at = put_bounds(at, 0, (1 << box->bits) - 1);
     if (attributes->form != DRACO_POSITIONS) {
         at = put_turns(at, attributes, &writer->turns[lane].run);
     }
-    if (attributes->form != DRACO_OFFSETS_TURNS) {
-        for (int k = 0; k < 3; k++) {
-            store_f32(at + 4 * k, box->origin[k]);
-        }
-        store_f32(at + 12, box->range);
-        at[16] = (unsigned char)box->bits;
-        at += DRACO_BOX_BYTES;
+    for (int k = 0; k < 3; k++) {
+        store_f32(at + 4 * k, box->origin[k]);
     }
+    store_f32(at + 12, box->range);
+    at[16] = (unsigned char)box->bits;
+    at += DRACO_BOX_BYTES;
     at = job->mesh->tail ? store_bytes(at, job->mesh->tail, job->mesh->tail_size) : at;
     memset(at, 0, job->size - (size_t)(at - out));
 }

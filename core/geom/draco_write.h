@@ -7,8 +7,8 @@
  *   | one attribute: position, float32, 3, quantised | difference prediction, wrapped | u8 1: compressed
  *   | the differences as symbols | i32 0, i32 2^bits - 1 | f32 origin[3] | f32 range | u8 bits | zeros, if any
  *
- * Meshes with numbers beside their positions, or in their stead (draco_format.h), have a second attribute: its symbols,
- * and its bounds where they are differences, stand before origin, range and bits.
+ * Meshes with numbers beside their positions (draco_format.h) have a second attribute: its symbols and bounds stand
+ * before origin, range and bits.
  *
  * Sources: Draco's bitstream specification and STREAM.md. Stock libdraco (draco_shim.h) decodes it to the same integers
  * that its own encoder would have put there. A function of the mesh, the positions and the caller's memory. */
@@ -43,7 +43,6 @@ typedef struct draco_job {
     const draco_mesh *mesh;  /* NULL: a job that is not used */
     const float *positions;  /* [vertices][3] */
     const uint16_t *numbers; /* [vertices][3]: these in their stead, below 2^bits of the box */
-    const int16_t *offsets;  /* [vertices][3], where there are no positions */
     const int16_t *turns;    /* [vertices][3], where the mesh has any */
     quantise_findings found;
     size_t size;         /* out: bytes of the mesh */

@@ -19,9 +19,9 @@
 #include <string.h>
 
 struct geom_scratch {
-    draco_writer *writer;         /* NULL: stock encoder */
-    float *vertices[RANS_LANES];  /* of the largest patch each; NULL where points are taken as they are */
-    int16_t *numbers[RANS_LANES]; /* of guides: turns [vertices][3], then offsets [vertices][3] */
+    draco_writer *writer;        /* NULL: stock encoder */
+    float *vertices[RANS_LANES]; /* of the largest patch each; NULL where points are taken as they are */
+    int16_t *turns[RANS_LANES];  /* of guides: [vertices][3] */
     size_t held;
     delta_scratch *delta; /* NULL: of no kind that has deltas */
 };
@@ -53,19 +53,19 @@ awt_status geom_scratch_create(const geom_layout *layout, geom_scratch **out, aw
             draco_writer_create(vertices, layout->box.bits, scheme, layout->attributes.form, &scratch->writer, error);
     }
     for (int k = 0; k < RANS_LANES && layout->kind == GEOM_GUIDES && status == AWT_OK; k++) {
-        const size_t size = 6 * (size_t)vertices * sizeof(int16_t);
-        scratch->numbers[k] = malloc(size);
+        const size_t size = 3 * (size_t)vertices * sizeof(int16_t);
+        scratch->turns[k] = malloc(size);
         scratch->held += size;
-        status = scratch->numbers[k] ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
+        status = scratch->turns[k] ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
     }
-    const int copies = layout->stock ? 1 : layout->kind == GEOM_STRANDS ? 0 : RANS_LANES;
+    const int copies = layout->stock ? 1 : layout->kind == GEOM_RIBBON ? RANS_LANES : 0;
     for (int k = 0; k < copies && status == AWT_OK; k++) {
         const size_t size = 3 * (size_t)vertices * sizeof(float);
         scratch->vertices[k] = malloc(size);
         scratch->held += size;
         status = scratch->vertices[k] ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
     }
-    if (status == AWT_OK && layout->kind == GEOM_STRANDS && !layout->stock) {
+    if (status == AWT_OK && layout->kind != GEOM_RIBBON && !layout->stock) {
         status = delta_scratch_create(layout, &scratch->delta, error);
     }
     if (status != AWT_OK) {
@@ -83,7 +83,7 @@ void geom_scratch_destroy(geom_scratch *scratch)
         delta_scratch_destroy(scratch->delta);
         for (int k = 0; k < RANS_LANES; k++) {
             free(scratch->vertices[k]);
-            free(scratch->numbers[k]);
+            free(scratch->turns[k]);
         }
         free(scratch);
     }
@@ -149,7 +149,7 @@ static awt_status put_patch(encoding *e, uint32_t index, const draco_job *job, i
         return status;
     }
     draco_writer_put(e->scratch->writer, &layout->box, job, lane, at);
-    for (int k = 0; k < 3 && layout->attributes.form != DRACO_OFFSETS_TURNS; k++) {
+    for (int k = 0; k < 3; k++) {
         place.min[k] = draco_box_coordinate(&layout->box, k, job->found.least[k]);
         place.max[k] = draco_box_coordinate(&layout->box, k, job->found.greatest[k]);
     }
@@ -174,39 +174,13 @@ static bool is_kept(const encoding *e, uint32_t index)
     return e->def->unchanged && e->def->unchanged[index];
 }
 
-static bool all_finite(const float *values, size_t count)
+/* False: a frame is not finite. */
+static bool add_turns(encoding *e, const geom_patch *patch, int lane, draco_job *job)
 {
-    bool finite = true;
-    for (size_t i = 0; i < count; i++) {
-        finite = finite && isfinite(values[i]);
-    }
-    return finite;
-}
-
-/* Turns, and in bound frames the differences to what a reader expects. False: something is not finite. */
-static bool add_guides(encoding *e, const geom_patch *patch, int lane, draco_job *job)
-{
-    const geom_layout *layout = e->layout;
     const guides_part part = {patch->first_strand, patch->strands};
-    const size_t nodes = layout_patch_vertices(layout, patch);
-    const float *frames = e->def->frames + 4 * (size_t)part.first_wisp * layout->points_per_strand;
-    int16_t *turns = e->scratch->numbers[lane], *offsets = turns + 3 * nodes;
-    const vec3 *centres = (const vec3 *)(const void *)job->positions;
-    if (!all_finite(frames, 4 * nodes) ||
-        !guides_turns(layout->binding, part, (const quat *)(const void *)frames, turns)) {
-        return false;
-    }
-    job->turns = turns;
-    if (layout->attributes.form == DRACO_OFFSETS_TURNS) {
-        if (!all_finite(job->positions, 3 * nodes)) {
-            return false;
-        }
-        job->found.finite = true;
-        job->offsets = offsets;
-        e->stats.clamped_points +=
-            guides_bind(layout->binding, part, centres, turns, offsets, (vec3 *)(void *)e->scratch->vertices[lane]);
-    }
-    return true;
+    const float *frames = e->def->frames + 4 * (size_t)part.first_wisp * e->layout->points_per_strand;
+    job->turns = e->scratch->turns[lane];
+    return guides_turns(e->layout->binding, part, (const quat *)(const void *)frames, e->scratch->turns[lane]);
 }
 
 static awt_status add_job(encoding *e, uint32_t index, window *w)
@@ -229,7 +203,7 @@ static awt_status add_job(encoding *e, uint32_t index, window *w)
     }
     draco_job *job = &w->jobs[w->count];
     *job = (draco_job){.mesh = &layout->meshes[index], .positions = points};
-    if (layout->kind == GEOM_GUIDES && !add_guides(e, patch, w->count, job)) {
+    if (layout->kind == GEOM_GUIDES && !add_turns(e, patch, w->count, job)) {
         return refuse_points(e, patch);
     }
     w->count++;
@@ -367,7 +341,8 @@ awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const g
         (layout->stock || !def->previous || !glb_template_made(&layout->frame, def->previous))) {
         status = error_set(error, AWT_BAD_VALUE, "the previous frame is none of this layout, or of the stock encoder");
     }
-    if (status == AWT_OK && def->quantised && !quantised_fits(def->quantised, layout)) {
+    if (status == AWT_OK && def->quantised &&
+        (layout->kind != GEOM_STRANDS || !quantised_fits(def->quantised, layout))) {
         status = error_set(error, AWT_BAD_VALUE, "the whole numbers are none of this layout's");
     }
     if (status == AWT_OK) {

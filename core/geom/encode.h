@@ -41,7 +41,6 @@ typedef struct geom_layout_def {
     uint32_t attributes; /* of vertices, beside the position: geom_attribute; own encoder, ribbons and strands only */
     float colour[3];     /* the material's base colour, linear, each 0 .. 1; all 0: brown. Of guides: not looked at */
     bool stock;          /* libdraco's encoder, the reference, instead of our own: the same positions, much slower */
-    bool bound;          /* guides: said against the binding (guides.h), a fifth of the bytes, and nothing without it */
 } geom_layout_def;
 
 /* Patches are whole wisp trees, in order, under GEOM_PATCH_POINTS. A tree that alone is too large is cut between
@@ -77,7 +76,7 @@ void geom_scratch_destroy(geom_scratch *scratch);
 /* Bytes that it holds. */
 size_t geom_scratch_bytes(const geom_scratch *scratch);
 
-/* A frame of kind strands as whole numbers: what deltas are made between. */
+/* A frame of kind strands or guides as whole numbers: what deltas are made between. */
 typedef struct geom_quantised geom_quantised;
 
 /* What a frame is made of. */
@@ -117,7 +116,7 @@ awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const g
 
 /* ---- deltas: what changed from one frame to another (proto/DELTAS.md) ---- */
 
-/* Memory for the whole numbers of one frame of a layout of kind strands. AWT_NO_MEMORY, AWT_BAD_VALUE. */
+/* Memory for the whole numbers of one frame of a layout of kind strands or guides. AWT_NO_MEMORY, AWT_BAD_VALUE. */
 awt_status geom_quantised_create(const geom_layout *layout, geom_quantised **out, awt_error *error);
 void geom_quantised_destroy(geom_quantised *quantised);
 /* Bytes that it holds. */
@@ -126,29 +125,32 @@ size_t geom_quantised_bytes(const geom_quantised *quantised);
 uint32_t geom_quantised_checksum(const geom_quantised *quantised);
 
 typedef struct geom_quantise_def {
-    const float *points; /* [geom_layout_strands][points_per_strand][3], head frame */
+    const float *points; /* as of geom_frame_def */
+    const float *frames; /* likewise */
 
-    /* Patches whose points are to the bit those that `previous` was made of. NULL: none. */
+    /* Patches whose points and frames are to the bit those that `previous` was made of. NULL: none. */
     const bool *unchanged; /* [geom_layout_patches] */
     const geom_quantised *previous;
 } geom_quantise_def;
 
-/* Fills `out`, which may be `previous`; adds to *clamped how many points of the other patches were set onto the box.
- * AWT_BAD_VALUE (a point is not finite, `previous` is none of this layout); `out` is then of no frame. */
+/* Fills `out`, which may be `previous`; adds to *clamped how many points of the other patches were set onto the box,
+ * of guides how many sections no number reached. AWT_BAD_VALUE (a point or frame is not finite, `previous` is none of
+ * this layout); `out` is then of no frame. */
 awt_status geom_quantise(const geom_layout *layout, const geom_quantise_def *def, geom_quantised *out,
                          uint32_t *clamped, awt_error *error);
 
 typedef struct geom_delta_def {
-    const geom_quantised *base, *now;
-    uint64_t base_sequence, sequence; /* the caller's names for them, which the receiver is told */
+    const geom_quantised *base, *now; /* of guides `base` may be NULL: the frame comes whole */
+    uint64_t base_sequence, sequence; /* the caller's names for them, which the receiver is told; of no base 0 */
     awt_pose head;
     int64_t time_us;
     bool measure; /* work out entropy_bits, which takes time */
 } geom_delta_def;
 
-/* Writes the frame `now` for who has `base`: a GLB with the extension AWT_strands_delta, in which patches that are the
- * same in both are left out. `out` is replaced. Of `stats` vertices, encoded_patches and entropy_bits are those of the
- * patches that are in it. AWT_BAD_VALUE (numbers of another layout or of no frame; the pose is not finite),
+/* Writes the frame `now` for who has `base`: a GLB with the extension AWT_delta, in which patches that are the same in
+ * both are left out. `out` is replaced. Of `stats` vertices, encoded_patches and entropy_bits are those of the
+ * patches that are in it. AWT_BAD_VALUE (numbers of another layout or of no frame; a base without a
+ * sequence or the reverse; the pose is not finite),
  * AWT_NO_MEMORY, AWT_LIMIT. */
 awt_status geom_encode_delta(const geom_layout *layout, geom_scratch *scratch, const geom_delta_def *def,
                              geom_buffer *out, geom_frame_stats *stats, awt_error *error);

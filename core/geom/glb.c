@@ -71,16 +71,15 @@ static bool read_kind(const glb_reader *r, uint32_t extras, glb_frame *out)
     return false;
 }
 
-/* Which binding guides belong to, and which of their two forms this is. */
+/* Which binding guides belong to. */
 static bool read_binding(const glb_reader *r, uint32_t extras, glb_frame *out)
 {
     uint32_t bits;
-    const bool bound = json_is_true(&r->json, json_member(&r->json, extras, "bound"));
     if (!json_hexadecimal(&r->json, json_member(&r->json, extras, "binding"), &out->binding) ||
         !whole_member(r, extras, "turn_bits", &bits) || bits < 2 || bits > DRACO_MAX_TURN_BITS) {
         return false;
     }
-    out->attributes.form = bound ? DRACO_OFFSETS_TURNS : DRACO_POSITIONS_TURNS;
+    out->attributes.form = DRACO_POSITIONS_TURNS;
     out->attributes.turn_bits = (int)bits;
     return true;
 }
@@ -160,9 +159,8 @@ static bool read_attribute(const glb_reader *r, uint32_t attributes, uint32_t id
 
 static bool read_attributes(const glb_reader *r, uint32_t attributes, uint32_t ids, draco_form form, uint32_t vertices)
 {
-    bool first = form == DRACO_OFFSETS_TURNS ? read_attribute(r, attributes, ids, "_OFFSET", 0, GLB_I16, vertices)
-                                             : read_attribute(r, attributes, ids, "POSITION", 0, GLB_F32, vertices);
-    return first && (form == DRACO_POSITIONS || read_attribute(r, attributes, ids, "_TURN", 1, GLB_I16, vertices));
+    return read_attribute(r, attributes, ids, "POSITION", 0, GLB_F32, vertices) &&
+           (form == DRACO_POSITIONS || read_attribute(r, attributes, ids, "_TURN", 1, GLB_I16, vertices));
 }
 
 /* Which extra attributes a patch has, all of them as ours are. False: one is not. */

@@ -89,17 +89,11 @@ void add_patch(tinygltf::Model *model, tinygltf::Mesh *mesh, const glb_frame &fr
     primitive.indices = add_accessor(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
                                      static_cast<size_t>(patch.triangles) * 3);
     Members attributes;
-    if (form == DRACO_OFFSETS_TURNS) {
-        primitive.attributes["_OFFSET"] =
-            add_accessor(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_SHORT, patch.vertices);
-        attributes["_OFFSET"] = whole(0);
-    } else {
-        primitive.attributes["POSITION"] =
-            add_accessor(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, patch.vertices);
-        model->accessors.back().minValues.assign(patch.min, patch.min + 3);
-        model->accessors.back().maxValues.assign(patch.max, patch.max + 3);
-        attributes["POSITION"] = whole(0);
-    }
+    primitive.attributes["POSITION"] =
+        add_accessor(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, patch.vertices);
+    model->accessors.back().minValues.assign(patch.min, patch.min + 3);
+    model->accessors.back().maxValues.assign(patch.max, patch.max + 3);
+    attributes["POSITION"] = whole(0);
     if (form != DRACO_POSITIONS) {
         primitive.attributes["_TURN"] =
             add_accessor(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_SHORT, patch.vertices);
@@ -161,7 +155,6 @@ tinygltf::Node make_node(const glb_frame &frame)
         char binding[17];
         std::snprintf(binding, sizeof binding, "%016llx", static_cast<unsigned long long>(frame.binding));
         extras["binding"] = tinygltf::Value(std::string(binding));
-        extras["bound"] = tinygltf::Value(frame.attributes.form == DRACO_OFFSETS_TURNS);
         extras["turn_bits"] = whole(static_cast<uint32_t>(frame.attributes.turn_bits));
     }
     if (frame.widths) {

@@ -61,8 +61,8 @@ static void find_numbers(finder *f, uint32_t array, uint32_t count, uint32_t fie
     }
 }
 
-/* Each patch's accessors: indices, positions or offsets, `others`: turns or extra attributes. */
-static void find_patches(finder *f, draco_form form, uint32_t others, uint32_t patch_count)
+/* Each patch's accessors: indices, positions, `others`: turns or extra attributes. */
+static void find_patches(finder *f, uint32_t others, uint32_t patch_count)
 {
     const json_document *json = &f->json;
     uint32_t views = json_member(json, 0, "bufferViews"), accessors = json_member(json, 0, "accessors");
@@ -72,10 +72,8 @@ static void find_patches(finder *f, draco_form form, uint32_t others, uint32_t p
         uint32_t position = json->tokens[accessor].after;
         find_number(f, json_member(json, view, "byteOffset"), WHOLE_WIDTH, patch_field(i, PATCH_OFFSET));
         find_number(f, json_member(json, view, "byteLength"), WHOLE_WIDTH, patch_field(i, PATCH_SIZE));
-        if (form != DRACO_OFFSETS_TURNS) {
-            find_numbers(f, json_member(json, position, "min"), 3, patch_field(i, PATCH_MIN));
-            find_numbers(f, json_member(json, position, "max"), 3, patch_field(i, PATCH_MAX));
-        }
+        find_numbers(f, json_member(json, position, "min"), 3, patch_field(i, PATCH_MIN));
+        find_numbers(f, json_member(json, position, "max"), 3, patch_field(i, PATCH_MAX));
         view = json->tokens[view].after;
         accessor = json->tokens[position].after;
         for (uint32_t k = 0; k < others && !f->missing; k++) {
@@ -84,7 +82,7 @@ static void find_patches(finder *f, draco_form form, uint32_t others, uint32_t p
     }
 }
 
-static void find_all(finder *f, draco_form form, uint32_t others, uint32_t patch_count)
+static void find_all(finder *f, uint32_t others, uint32_t patch_count)
 {
     const json_document *json = &f->json;
     uint32_t asset = json_member(json, 0, "asset"), node = json_member(json, 0, "nodes") + 1;
@@ -93,7 +91,7 @@ static void find_all(finder *f, draco_form form, uint32_t others, uint32_t patch
     find_numbers(f, json_member(json, node, "translation"), 3, FIELD_POSITION);
     find_numbers(f, json_member(json, node, "rotation"), 4, FIELD_ORIENTATION);
     find_number(f, json_member(json, buffer, "byteLength"), WHOLE_WIDTH, FIELD_BUFFER);
-    find_patches(f, form, others, patch_count);
+    find_patches(f, others, patch_count);
 }
 
 static int by_place(const void *a, const void *b)
@@ -177,7 +175,7 @@ awt_status glb_template_make(const glb_frame *frame, glb_template *out, awt_erro
         status = json_read((const char *)sample.bytes + GLB_HEADER + GLB_CHUNK_HEADER, size, &f.json, error);
         if (status == AWT_OK) {
             const uint32_t turns = frame->attributes.form != DRACO_POSITIONS;
-            find_all(&f, frame->attributes.form, turns + draco_extra_count(frame->extra), frame->patch_count);
+            find_all(&f, turns + draco_extra_count(frame->extra), frame->patch_count);
             status = f.missing ? AWT_BAD_VALUE : AWT_OK;
         }
         if (status == AWT_OK) {

@@ -22,7 +22,7 @@ awt_status glb_template_begin(const glb_template *t, const awt_pose *head, int64
                               awt_error *error);
 /* Says where patch number `index` is in the binary chunk. */
 void glb_template_place(const glb_template *t, uint32_t index, const glb_patch *patch, geom_buffer *out);
-/* The same, and its bounds, where it has positions. */
+/* The same, and its bounds. */
 void glb_template_patch(const glb_template *t, uint32_t index, const glb_patch *patch, geom_buffer *out);
 /* Writes the lengths, when all patches are there. */
 void glb_template_end(const glb_template *t, geom_buffer *out);

@@ -1,7 +1,7 @@
 /* guides.c: see guides.h. */
 #include "geom/guides.h"
 
-#include "geom/draco_format.h"
+#include "geom/encode.h" /* GEOM_PATCH_POINTS */
 
 #include <math.h>
 
@@ -34,7 +34,7 @@ static bool put_turn(const geom_binding *binding, quat t, int16_t number[3])
 {
     const float length = sqrtf(t.x * t.x + t.y * t.y + t.z * t.z + t.w * t.w);
     const float scale = turn_reach(binding) / (t.w < 0 ? t.w - length : t.w + length);
-    if (!(length > 0 && isfinite(scale))) {
+    if (!(length > 0 && isfinite(length) && isfinite(scale))) {
         return false;
     }
     number[0] = (int16_t)nearest(t.x * scale);
@@ -94,6 +94,16 @@ void guides_frames(const geom_binding *binding, guides_part part, const int16_t 
 
 /* ---- bound */
 
+uint32_t guides_together(const geom_binding *binding, uint32_t first)
+{
+    const uint32_t room = GEOM_PATCH_POINTS / binding->sections, left = binding->wisps - first;
+    uint32_t count = 1;
+    while (count < room && count < left && binding->tree[first + count] == binding->tree[first]) {
+        count++;
+    }
+    return count;
+}
+
 enum { NO_NEIGHBOUR = -1 };
 
 /* How many sections before section i of the part's wisp number w its neighbour is; NO_NEIGHBOUR. */
@@ -117,22 +127,33 @@ static vec3 predict(const geom_binding *binding, const vec3 *rest, int32_t back,
     return vec3_add(centre[-back], quat_rotate(t, vec3_sub(*rest, rest[-back])));
 }
 
-static vec3 step_on(const geom_binding *binding, vec3 from, const int16_t offset[3])
+static int16_t number_of(uint16_t kept)
 {
-    const vec3 steps = {(float)offset[0], (float)offset[1], (float)offset[2]};
+    const int spare_bits = 16 - GUIDES_BITS;
+    return (int16_t)((int16_t)(uint16_t)(kept << spare_bits) >> spare_bits);
+}
+
+static uint16_t kept_of(int number)
+{
+    return (uint16_t)((unsigned)number & ((1u << GUIDES_BITS) - 1));
+}
+
+static vec3 step_on(const geom_binding *binding, vec3 from, const uint16_t kept[3])
+{
+    const vec3 steps = {(float)number_of(kept[0]), (float)number_of(kept[1]), (float)number_of(kept[2])};
     return vec3_mad(from, steps, binding->position_step_m);
 }
 
 /* One coordinate's distance in steps, as far as a number goes. */
-static int16_t steps_to(float way_m, float step_m, bool *too_far)
+static uint16_t steps_to(float way_m, float step_m, bool *too_far)
 {
-    const float steps = way_m / step_m, most = DRACO_NUMBER_MOST;
+    const float steps = way_m / step_m, most = GUIDES_MOST;
     *too_far = *too_far || !(fabsf(steps) <= most);
-    return (int16_t)nearest(fmaxf(fminf(steps, most), -most));
+    return kept_of(nearest(fmaxf(fminf(steps, most), -most)));
 }
 
-uint32_t guides_bind(const geom_binding *binding, guides_part part, const vec3 *centres, int16_t *turns,
-                     int16_t *offsets, vec3 *rebuilt)
+uint32_t guides_bind(const geom_binding *binding, guides_part part, const vec3 *centres, const int16_t *turns,
+                     uint16_t *numbers, vec3 *rebuilt)
 {
     const uint32_t sections = binding->sections;
     const vec3 *rest = binding->rest_centre + (size_t)part.first_wisp * sections;
@@ -140,34 +161,35 @@ uint32_t guides_bind(const geom_binding *binding, guides_part part, const vec3 *
     uint32_t clamped = 0;
     for (size_t n = 0; n < (size_t)part.wisps * sections; n++) {
         const int32_t back = neighbour(binding, part, (uint32_t)(n / sections), (uint32_t)(n % sections));
-        const vec3 from = predict(binding, rest + n, back, rebuilt + n, turns + 3 * n);
+        const int16_t *turn = turns + 3 * n;
+        const vec3 from = predict(binding, rest + n, back, rebuilt + n, turn);
         const vec3 way = vec3_sub(centres[n], from);
-        int16_t *offset = offsets + 3 * n;
+        uint16_t *number = numbers + GUIDES_COMPONENTS * n;
         bool too_far = false;
-        offset[0] = steps_to(way.x, step, &too_far);
-        offset[1] = steps_to(way.y, step, &too_far);
-        offset[2] = steps_to(way.z, step, &too_far);
-        rebuilt[n] = step_on(binding, from, offset);
-        clamped += too_far;
-    }
-    for (size_t n = (size_t)part.wisps * sections; n-- > 0;) { /* backwards: a neighbour is still itself */
-        const int32_t back = neighbour(binding, part, (uint32_t)(n / sections), (uint32_t)(n % sections));
-        for (size_t k = 3 * n; k < 3 * n + 3 && back != NO_NEIGHBOUR; k++) {
-            turns[k] = (int16_t)(turns[k] - turns[k - 3 * (size_t)back]);
+        number[0] = steps_to(way.x, step, &too_far);
+        number[1] = steps_to(way.y, step, &too_far);
+        number[2] = steps_to(way.z, step, &too_far);
+        for (int k = 0; k < 3; k++) {
+            number[3 + k] = kept_of(back == NO_NEIGHBOUR ? turn[k] : turn[k] - turn[k - 3 * back]);
         }
+        rebuilt[n] = step_on(binding, from, number);
+        clamped += too_far;
     }
     return clamped;
 }
 
-void guides_unbind(const geom_binding *binding, guides_part part, const int16_t *offsets, int16_t *turns, vec3 *centres)
+void guides_unbind(const geom_binding *binding, guides_part part, const uint16_t *numbers, int16_t *turns,
+                   vec3 *centres)
 {
     const uint32_t sections = binding->sections;
     const vec3 *rest = binding->rest_centre + (size_t)part.first_wisp * sections;
     for (size_t n = 0; n < (size_t)part.wisps * sections; n++) {
         const int32_t back = neighbour(binding, part, (uint32_t)(n / sections), (uint32_t)(n % sections));
-        for (size_t k = 3 * n; k < 3 * n + 3 && back != NO_NEIGHBOUR; k++) {
-            turns[k] = (int16_t)(turns[k] + turns[k - 3 * (size_t)back]);
+        const uint16_t *number = numbers + GUIDES_COMPONENTS * n;
+        int16_t *turn = turns + 3 * n;
+        for (int k = 0; k < 3; k++) {
+            turn[k] = (int16_t)(number_of(number[3 + k]) + (back == NO_NEIGHBOUR ? 0 : turn[k - 3 * back]));
         }
-        centres[n] = step_on(binding, predict(binding, rest + n, back, centres + n, turns + 3 * n), offsets + 3 * n);
+        centres[n] = step_on(binding, predict(binding, rest + n, back, centres + n, turn), number);
     }
 }

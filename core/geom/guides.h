@@ -6,9 +6,10 @@
  * of a quarter of the angle along the axis: it has no pole up to half a turn and is made by rational arithmetic alone.
  * Each coordinate, within -1 .. 1, is a whole number by 2^(bits-1) - 1.
  *
- * Centres are whole numbers of the quantisation box (quantise.h) in frames that stand for themselves. In bound frames
- * every section is predicted from a neighbour that the reader knows already: the same section of the wisp before it,
- * where that is of the same tree and patch, else the section before it on its own wisp:
+ * Centres are whole numbers of the quantisation box (quantise.h) in frames that any viewer shows. Between those who
+ * have the binding (proto/DELTAS.md) every section is bound: predicted from a neighbour that the reader knows already,
+ * the same section of the wisp before it, where that is of the same tree and patch, else the section before it on its
+ * own wisp:
  *
  *   turn = t,   centre = c + t (rest - r)
  *
@@ -22,6 +23,10 @@
 
 #include "geom/binding.h"
 
+/* Bound sections are six numbers each, three of the centre and three of the turn, modulo 2^GUIDES_BITS: either way no
+ * more than GUIDES_MOST. */
+enum { GUIDES_COMPONENTS = 6, GUIDES_BITS = 15, GUIDES_MOST = (1 << (GUIDES_BITS - 1)) - 1 };
+
 /* Radians from one turn to the next, at small angles. */
 static inline float guides_turn_step(uint32_t bits)
 {
@@ -33,17 +38,22 @@ typedef struct guides_part {
     uint32_t first_wisp, wisps;
 } guides_part;
 
+/* How many wisps from number `first` on, where a tree begins or is cut, are bound together: the tree, or of one that
+ * has more than GEOM_PATCH_POINTS sections as many whole wisps as have no more (layout.c: no patch ends among them). */
+uint32_t guides_together(const geom_binding *binding, uint32_t first);
+
 /* Turns [nodes of the part][3] from frames [nodes of the part]. False: a frame is not finite. */
 bool guides_turns(const geom_binding *binding, guides_part part, const quat *frames, int16_t *turns);
 /* The way back, whatever the turns. */
 void guides_frames(const geom_binding *binding, guides_part part, const int16_t *turns, quat *frames);
 
-/* Makes of the part's centres and its turns the differences of a bound frame; `rebuilt` [nodes of the part] becomes the
- * centres as a reader will have them. Returns how many sections are too far from their prediction for a number. */
-uint32_t guides_bind(const geom_binding *binding, guides_part part, const vec3 *centres, int16_t *turns,
-                     int16_t *offsets, vec3 *rebuilt);
-/* The way back: turns and centres. */
-void guides_unbind(const geom_binding *binding, guides_part part, const int16_t *offsets, int16_t *turns,
+/* Makes of the part's centres and turns the numbers [nodes of the part][GUIDES_COMPONENTS]; `rebuilt` [nodes of the
+ * part] becomes the centres as a reader will have them. Returns how many sections are too far from their prediction for
+ * a number. Centres are finite. */
+uint32_t guides_bind(const geom_binding *binding, guides_part part, const vec3 *centres, const int16_t *turns,
+                     uint16_t *numbers, vec3 *rebuilt);
+/* The way back, whatever the numbers: turns and centres. */
+void guides_unbind(const geom_binding *binding, guides_part part, const uint16_t *numbers, int16_t *turns,
                    vec3 *centres);
 
 #endif

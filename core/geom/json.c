@@ -195,11 +195,6 @@ bool json_is_text(const json_document *d, uint32_t value, const char *text)
            memcmp(d->text + d->tokens[value].begin, text, length) == 0;
 }
 
-bool json_is_true(const json_document *d, uint32_t value)
-{
-    return is_kind(d, value, JSON_LITERAL) && d->text[d->tokens[value].begin] == 't';
-}
-
 bool json_hexadecimal(const json_document *d, uint32_t value, uint64_t *out)
 {
     static const char digits[] = "0123456789abcdef";

@@ -42,8 +42,6 @@ void json_fini(json_document *document);
 uint32_t json_member(const json_document *document, uint32_t object, const char *name);
 /* Whether a value is the string `text`. */
 bool json_is_text(const json_document *document, uint32_t value, const char *text);
-/* Whether a value is the literal true. */
-bool json_is_true(const json_document *document, uint32_t value);
 /* A string of exactly 16 hexadecimal digits, the highest first, letters small. */
 bool json_hexadecimal(const json_document *document, uint32_t value, uint64_t *out);
 /* An array's items; 0 for anything else. */

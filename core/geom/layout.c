@@ -121,7 +121,7 @@ static awt_status take_lines(geom_layout *layout, const awt_groom *groom, const 
         if (status == AWT_OK) {
             free(layout->binding->packed); /* the largest of it, and of no use here */
             layout->binding->packed = NULL;
-            layout->attributes.form = def->bound ? DRACO_OFFSETS_TURNS : DRACO_POSITIONS_TURNS;
+            layout->attributes.form = DRACO_POSITIONS_TURNS;
             layout->attributes.turn_bits = (int)layout->binding->turn_bits;
             layout->strands = layout->binding->wisps;
             layout->points_per_strand = layout->binding->sections;

@@ -37,20 +37,3 @@ bool numbers_sum_up(int bits, const uint16_t *symbols, size_t count, int16_t *nu
     }
     return all >> bits == 0;
 }
-
-uint16_t numbers_plain(const int16_t *numbers, size_t count, uint16_t *symbols)
-{
-    uint16_t all = 0;
-    for (size_t i = 0; i < 3 * count; i++) {
-        symbols[i] = fold(numbers[i]);
-        all = symbols[i] > all ? symbols[i] : all;
-    }
-    return all;
-}
-
-void numbers_of_plain(const uint16_t *symbols, size_t count, int16_t *numbers)
-{
-    for (size_t i = 0; i < 3 * count; i++) {
-        numbers[i] = (int16_t)unfold(symbols[i]);
-    }
-}

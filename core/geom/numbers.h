@@ -1,5 +1,5 @@
 /* numbers.h: triples of 16-bit numbers to the symbols that the bitstream holds, and back: each with its sign folded
- * into the lowest bit, as it is or as its difference to the triple before (quantise.h does that for positions). */
+ * into the lowest bit, as its difference to the triple before (quantise.h does that for positions). */
 #ifndef GEOM_NUMBERS_H
 #define GEOM_NUMBERS_H
 
@@ -12,9 +12,5 @@
 uint16_t numbers_differences(int bits, const int16_t *numbers, size_t count, uint16_t *symbols);
 /* The way back. False: a symbol is none of numbers of so many bits. May be done in place. */
 bool numbers_sum_up(int bits, const uint16_t *symbols, size_t count, int16_t *numbers);
-
-/* Numbers as they are; |number| <= 16383. */
-uint16_t numbers_plain(const int16_t *numbers, size_t count, uint16_t *symbols);
-void numbers_of_plain(const uint16_t *symbols, size_t count, int16_t *numbers);
 
 #endif

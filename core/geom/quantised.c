@@ -1,32 +1,64 @@
 /* quantised.c: see encode.h and quantised.h. */
 #include "geom/quantised.h"
 
-#include "base/bytes.h"
 #include "base/crc32c.h"
 #include "base/error.h"
-#include "geom/layout.h"
+#include "geom/delta_checksum.h"
+#include "geom/guides.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHECKSUM_PIECE = 1024 /* numbers */ };
+delta_shape quantised_shape(const geom_layout *layout, uint32_t strands)
+{
+    const bool guides = layout->kind == GEOM_GUIDES;
+    return (delta_shape){.strands = strands,
+                         .points = layout->points_per_strand,
+                         .components = guides ? GUIDES_COMPONENTS : 3,
+                         .bits = guides ? GUIDES_BITS : layout->box.bits};
+}
+
+draco_box quantised_box(const geom_layout *layout)
+{
+    return layout->kind == GEOM_GUIDES ? (draco_box){.bits = GUIDES_BITS} : layout->box;
+}
+
+uint64_t quantised_binding(const geom_layout *layout)
+{
+    return layout->binding ? layout->binding->id : 0;
+}
+
+static void *hold(geom_quantised *quantised, size_t size)
+{
+    quantised->held += size;
+    return malloc(size);
+}
 
 awt_status geom_quantised_create(const geom_layout *layout, geom_quantised **out, awt_error *error)
 {
     *out = NULL;
-    if (layout->kind != GEOM_STRANDS) {
+    if (layout->kind == GEOM_RIBBON) {
         return error_set(error, AWT_BAD_VALUE, "frames of this kind have no deltas");
     }
     geom_quantised *made = calloc(1, sizeof *made);
     if (!made) {
         return error_set(error, AWT_NO_MEMORY, NULL);
     }
-    made->count = (size_t)layout->strands * layout->points_per_strand * 3;
+    const delta_shape shape = quantised_shape(layout, layout->strands);
+    const size_t sections = (size_t)layout->largest_patch * layout->points_per_strand;
+    made->held = sizeof *made;
+    made->count = delta_count(&shape);
     made->patch_count = layout->patch_count;
-    made->numbers = malloc(made->count * sizeof *made->numbers);
-    made->checksums = malloc(made->patch_count * sizeof *made->checksums);
-    made->held = sizeof *made + made->count * sizeof *made->numbers + made->patch_count * sizeof *made->checksums;
-    if (!made->numbers || !made->checksums) {
+    made->numbers = hold(made, made->count * sizeof *made->numbers);
+    made->checksums = hold(made, made->patch_count * sizeof *made->checksums);
+    bool has_all = made->numbers && made->checksums;
+    if (layout->kind == GEOM_GUIDES) {
+        made->turns = hold(made, 3 * sections * sizeof *made->turns);
+        made->rebuilt = hold(made, sections * sizeof *made->rebuilt);
+        has_all = has_all && made->turns && made->rebuilt;
+    }
+    if (!has_all) {
         geom_quantised_destroy(made);
         return error_set(error, AWT_NO_MEMORY, NULL);
     }
@@ -39,6 +71,8 @@ void geom_quantised_destroy(geom_quantised *quantised)
     if (quantised) {
         free(quantised->numbers);
         free(quantised->checksums);
+        free(quantised->turns);
+        free(quantised->rebuilt);
         free(quantised);
     }
 }
@@ -53,34 +87,10 @@ uint32_t geom_quantised_checksum(const geom_quantised *quantised)
     return quantised->checksum;
 }
 
-uint32_t quantised_numbers_checksum(const uint16_t *numbers, size_t count)
+/* Points before a patch, and in it. */
+static size_t patch_first(const geom_layout *layout, uint32_t index)
 {
-    unsigned char piece[2 * CHECKSUM_PIECE];
-    uint32_t crc = 0;
-    for (size_t at = 0; at < count; at += CHECKSUM_PIECE) {
-        const size_t here = count - at < CHECKSUM_PIECE ? count - at : CHECKSUM_PIECE;
-        for (size_t i = 0; i < here; i++) {
-            store_u16(piece + 2 * i, numbers[at + i]);
-        }
-        crc = crc32c_more(crc, piece, 2 * here);
-    }
-    return crc;
-}
-
-uint32_t quantised_checksum(uint32_t numbers_checksum, const draco_box *box)
-{
-    unsigned char bytes[17];
-    for (int k = 0; k < 3; k++) {
-        store_f32(bytes + 4 * k, box->origin[k]);
-    }
-    store_f32(bytes + 12, box->range);
-    bytes[16] = (unsigned char)box->bits;
-    return crc32c_more(numbers_checksum, bytes, sizeof bytes);
-}
-
-static size_t patch_begin(const geom_layout *layout, uint32_t index)
-{
-    return (size_t)layout->patches[index].first_strand * layout->points_per_strand * 3;
+    return (size_t)layout->patches[index].first_strand * layout->points_per_strand;
 }
 
 static size_t patch_points(const geom_layout *layout, uint32_t index)
@@ -90,8 +100,9 @@ static size_t patch_points(const geom_layout *layout, uint32_t index)
 
 static bool same_shape(const geom_quantised *quantised, const geom_layout *layout)
 {
-    return quantised->count == (size_t)layout->strands * layout->points_per_strand * 3 &&
-           quantised->patch_count == layout->patch_count;
+    const delta_shape shape = quantised_shape(layout, layout->strands);
+    return quantised->count == delta_count(&shape) && quantised->patch_count == layout->patch_count &&
+           (quantised->rebuilt != NULL) == (layout->kind == GEOM_GUIDES);
 }
 
 bool quantised_fits(const geom_quantised *quantised, const geom_layout *layout)
@@ -101,28 +112,66 @@ bool quantised_fits(const geom_quantised *quantised, const geom_layout *layout)
 
 const uint16_t *quantised_patch(const geom_quantised *quantised, const geom_layout *layout, uint32_t index)
 {
-    return quantised->numbers + patch_begin(layout, index);
+    return quantised->numbers + quantised_shape(layout, 1).components * patch_first(layout, index);
 }
 
-/* One patch that changed. False: a point is not finite. */
-static bool take_patch(const geom_layout *layout, const float *points, uint32_t index, geom_quantised *out,
+/* ---- patches that changed. False: a point or frame is not finite. */
+
+static bool take_points(const geom_layout *layout, const float *points, uint32_t index, uint16_t *numbers,
+                        uint32_t *clamped)
+{
+    const size_t count = patch_points(layout, index);
+    const float *here = points + 3 * patch_first(layout, index);
+    const quantise_findings found = quantise_numbers(&layout->box, &layout->bounds, here, count, numbers);
+    if (found.outside && found.finite) {
+        *clamped += quantise_count_outside(&layout->bounds, here, count);
+    }
+    return found.finite;
+}
+
+static bool all_finite(const float *values, size_t count)
+{
+    bool finite = true;
+    for (size_t i = 0; i < count; i++) {
+        finite = finite && isfinite(values[i]);
+    }
+    return finite;
+}
+
+static bool take_sections(const geom_layout *layout, const geom_quantise_def *def, uint32_t index, uint16_t *numbers,
+                          geom_quantised *out, uint32_t *clamped)
+{
+    const guides_part part = {layout->patches[index].first_strand, layout->patches[index].strands};
+    const float *centres = def->points + 3 * patch_first(layout, index);
+    const float *frames = def->frames + 4 * patch_first(layout, index);
+    if (!all_finite(centres, 3 * patch_points(layout, index)) ||
+        !guides_turns(layout->binding, part, (const quat *)(const void *)frames, out->turns)) {
+        return false;
+    }
+    *clamped +=
+        guides_bind(layout->binding, part, (const vec3 *)(const void *)centres, out->turns, numbers, out->rebuilt);
+    return true;
+}
+
+static bool take_patch(const geom_layout *layout, const geom_quantise_def *def, uint32_t index, geom_quantised *out,
                        uint32_t *clamped)
 {
-    const size_t begin = patch_begin(layout, index), count = patch_points(layout, index);
-    uint16_t *numbers = out->numbers + begin;
-    const quantise_findings found = quantise_numbers(&layout->box, &layout->bounds, points + begin, count, numbers);
-    if (found.outside && found.finite) {
-        *clamped += quantise_count_outside(&layout->bounds, points + begin, count);
+    const uint32_t components = quantised_shape(layout, 1).components;
+    uint16_t *numbers = out->numbers + components * patch_first(layout, index);
+    const bool taken = layout->kind == GEOM_GUIDES ? take_sections(layout, def, index, numbers, out, clamped)
+                                                   : take_points(layout, def->points, index, numbers, clamped);
+    if (taken) {
+        out->checksums[index] = delta_checksum_numbers(numbers, components * patch_points(layout, index));
     }
-    out->checksums[index] = quantised_numbers_checksum(numbers, 3 * count);
-    return found.finite;
+    return taken;
 }
 
 static void keep_patch(const geom_layout *layout, const geom_quantised *previous, uint32_t index, geom_quantised *out)
 {
-    const size_t begin = patch_begin(layout, index), count = patch_points(layout, index);
+    const uint32_t components = quantised_shape(layout, 1).components;
+    const size_t begin = components * patch_first(layout, index), count = components * patch_points(layout, index);
     if (previous != out) {
-        memcpy(out->numbers + begin, previous->numbers + begin, 3 * count * sizeof *out->numbers);
+        memcpy(out->numbers + begin, previous->numbers + begin, count * sizeof *out->numbers);
         out->checksums[index] = previous->checksums[index];
     }
 }
@@ -133,17 +182,22 @@ awt_status geom_quantise(const geom_layout *layout, const geom_quantise_def *def
     if (!same_shape(out, layout) || (def->unchanged && !(def->previous && quantised_fits(def->previous, layout)))) {
         return error_set(error, AWT_BAD_VALUE, "the whole numbers are none of this layout's");
     }
+    if (layout->kind == GEOM_GUIDES && !def->frames) {
+        return error_set(error, AWT_BAD_VALUE, "guides have frames");
+    }
+    const size_t a_point = quantised_shape(layout, 1).components * sizeof *out->numbers;
     uint32_t outside = 0, checksum = 0;
     out->layout = NULL;
     for (uint32_t i = 0; i < layout->patch_count; i++) {
         if (def->unchanged && def->unchanged[i]) {
             keep_patch(layout, def->previous, i, out);
-        } else if (!take_patch(layout, def->points, i, out, &outside)) {
-            return error_set(error, AWT_BAD_VALUE, "a strand point of patch %u is not a finite number", i);
+        } else if (!take_patch(layout, def, i, out, &outside)) {
+            return error_set(error, AWT_BAD_VALUE, "a point or frame of patch %u is not a finite number", i);
         }
-        checksum = crc32c_join(checksum, out->checksums[i], 6 * patch_points(layout, i));
+        checksum = crc32c_join(checksum, out->checksums[i], a_point * patch_points(layout, i));
     }
-    out->checksum = quantised_checksum(checksum, &layout->box);
+    const draco_box box = quantised_box(layout);
+    out->checksum = delta_checksum(checksum, &box, quantised_binding(layout));
     out->layout = layout;
     *clamped += outside;
     return AWT_OK;

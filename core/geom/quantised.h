@@ -2,22 +2,27 @@
 #ifndef GEOM_QUANTISED_H
 #define GEOM_QUANTISED_H
 
-#include "geom/box.h"
+#include "geom/delta.h"
 #include "geom/encode.h"
+#include "geom/layout.h"
 
 struct geom_quantised {
     const geom_layout *layout; /* of the frame that is here; NULL: none */
     size_t count, held;
     uint32_t patch_count;
-    uint16_t *numbers;   /* [strands][points_per_strand][3] */
+    uint16_t *numbers;   /* [strands][points_per_strand][3], of guides [wisps][sections][GUIDES_COMPONENTS] */
     uint32_t *checksums; /* [patches]: CRC-32C of each patch's numbers */
     uint32_t checksum;   /* of the frame */
+    int16_t *turns;      /* of guides: [sections of the largest patch][3], working memory; else NULL */
+    vec3 *rebuilt;       /* of guides: [sections of the largest patch], likewise: centres as a reader will have them */
 };
 
-/* CRC-32C of numbers as u16, the low byte first, on any host. */
-uint32_t quantised_numbers_checksum(const uint16_t *numbers, size_t count);
-/* Of a frame: of its numbers, `numbers_checksum`, and the box behind them: f32 origin[3], f32 range, u8 bits. */
-uint32_t quantised_checksum(uint32_t numbers_checksum, const draco_box *box);
+/* What numbers of `strands` strands, or wisps, of the layout are. */
+delta_shape quantised_shape(const geom_layout *layout, uint32_t strands);
+/* The box of the numbers; of guides there is none, but for the bits. */
+draco_box quantised_box(const geom_layout *layout);
+/* The id of the binding of guides; else 0. */
+uint64_t quantised_binding(const geom_layout *layout);
 
 /* Whether a frame of that layout is here. */
 bool quantised_fits(const geom_quantised *quantised, const geom_layout *layout);

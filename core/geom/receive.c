@@ -13,20 +13,16 @@
 
 /* ---- guides */
 
-/* One patch of guides into its place; `numbers` holds six of every section of the largest. */
+/* One patch of guides into its place; `turns` holds those of the largest. */
 static bool read_patch(const geom_binding *binding, const glb_frame *frame, const glb_patch *patch,
-                       draco_reader *reader, const uint16_t *indices, int16_t *numbers, geom_guides *out)
+                       draco_reader *reader, const uint16_t *indices, int16_t *turns, geom_guides *out)
 {
     const size_t first = (size_t)patch->first_strand * frame->points_per_strand;
     const guides_part part = {patch->first_strand, patch->strands};
-    int16_t *turns = numbers, *offsets = numbers + 3 * (size_t)patch->vertices;
     float *centres = out->centres + 3 * first, *frames = out->frames + 4 * first;
-    if (!draco_read_numbers(reader, &frame->attributes, frame->binary + patch->offset, patch->size, indices,
-                            patch->vertices, patch->triangles, centres, offsets, turns)) {
+    if (!draco_read_turns(reader, frame->attributes.turn_bits, frame->binary + patch->offset, patch->size, indices,
+                          patch->vertices, patch->triangles, centres, turns)) {
         return false;
-    }
-    if (frame->attributes.form == DRACO_OFFSETS_TURNS) {
-        guides_unbind(binding, part, offsets, turns, (vec3 *)(void *)centres);
     }
     guides_frames(binding, part, turns, (quat *)(void *)frames);
     return true;
@@ -37,20 +33,20 @@ static awt_status read_patches(const geom_binding *binding, const glb_frame *fra
     const uint32_t largest = lines_largest_patch(frame), sections = frame->points_per_strand;
     const size_t vertices = (size_t)largest * sections;
     uint16_t *indices = lines_indices(frame);
-    int16_t *numbers = calloc(vertices, 6 * sizeof *numbers);
+    int16_t *turns = calloc(vertices, 3 * sizeof *turns);
     draco_reader *reader = NULL;
-    awt_status status = indices && numbers ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
+    awt_status status = indices && turns ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
     if (status == AWT_OK) {
         status =
             draco_reader_create((uint32_t)vertices, topology_triangles(frame->kind, largest, sections), &reader, error);
     }
     for (uint32_t i = 0; i < frame->patch_count && status == AWT_OK; i++) {
-        if (!read_patch(binding, frame, &frame->patches[i], reader, indices, numbers, out)) {
+        if (!read_patch(binding, frame, &frame->patches[i], reader, indices, turns, out)) {
             status = error_set(error, AWT_BAD_FORMAT, "a patch's Draco data is not what awtd's encoder writes");
         }
     }
     draco_reader_destroy(reader);
-    free(numbers);
+    free(turns);
     free(indices);
     return status;
 }
@@ -86,6 +82,7 @@ void geom_guides_fini(geom_guides *guides)
 {
     free(guides->centres);
     free(guides->frames);
+    free(guides->numbers);
     *guides = (geom_guides){0};
 }
 
@@ -104,38 +101,65 @@ awt_status geom_read_guides(const geom_binding *binding, const void *bytes, size
 
 /* ---- strands */
 
-static awt_status evaluate(const geom_binding *binding, const glb_frame *frame, geom_strands *out, awt_error *error)
+/* Memory for all strands of the binding, where `out` has none of that shape. */
+static awt_status make_strands(const geom_binding *binding, geom_strands *out, awt_error *error)
+{
+    if (out->positions && out->widths && !out->vertices && out->strand_count == binding->strands &&
+        out->points_per_strand == binding->points) {
+        return AWT_OK;
+    }
+    const size_t points = (size_t)binding->strands * binding->points;
+    geom_strands made = {.strand_count = binding->strands,
+                         .points_per_strand = binding->points,
+                         .positions = malloc(points * 3 * sizeof(float)),
+                         .widths = malloc(binding->points * sizeof(float))};
+    if (!made.positions || !made.widths) {
+        geom_strands_fini(&made);
+        return error_set(error, AWT_NO_MEMORY, NULL);
+    }
+    geom_strands_fini(out);
+    *out = made;
+    return AWT_OK;
+}
+
+awt_status geom_guides_strands(const geom_binding *binding, const geom_guides *guides, geom_strands *out,
+                               awt_error *error)
 {
     const evaluate_binding strands = {.wisps = binding->wisps,
                                       .sections = binding->sections,
                                       .points = binding->points,
                                       .strand_first = binding->strand_first,
                                       .offsets = binding->offsets};
-    const size_t points = (size_t)binding->strands * binding->points;
-    geom_guides guides;
-    awt_status status = take_guides(binding, frame, &guides, error);
-    if (status != AWT_OK) {
-        return status;
+    if (guides->wisps != binding->wisps || guides->sections != binding->sections) {
+        return error_set(error, AWT_BAD_VALUE, "these guides belong to another binding");
     }
     float *scratch = malloc(evaluate_scratch(binding->sections, binding->points) * sizeof *scratch);
-    geom_strands made = {.kind = GEOM_GUIDES,
-                         .strand_count = binding->strands,
-                         .full_strand_count = binding->strands,
-                         .points_per_strand = binding->points,
-                         .positions = malloc(points * 3 * sizeof(float)),
-                         .widths = malloc(binding->points * sizeof(float)),
-                         .patch_count = frame->patch_count,
-                         .head = frame->head,
-                         .time_us = frame->time_us};
-    if (scratch && made.positions && made.widths) {
-        memcpy(made.widths, binding->widths, binding->points * sizeof *made.widths);
-        evaluate_hair(&strands, guides.centres, guides.frames, scratch, made.positions);
-        *out = made;
-    } else {
-        geom_strands_fini(&made);
-        status = error_set(error, AWT_NO_MEMORY, NULL);
+    awt_status status = scratch ? make_strands(binding, out, error) : error_set(error, AWT_NO_MEMORY, NULL);
+    if (status == AWT_OK) {
+        evaluate_hair(&strands, guides->centres, guides->frames, scratch, out->positions);
+        memcpy(out->widths, binding->widths, binding->points * sizeof *out->widths);
+        out->kind = GEOM_GUIDES;
+        out->full_strand_count = binding->strands;
+        out->patch_count = guides->patch_count;
+        out->triangle_count = 0;
+        out->head = guides->head;
+        out->time_us = guides->time_us;
     }
     free(scratch);
+    return status;
+}
+
+static awt_status evaluate(const geom_binding *binding, const glb_frame *frame, geom_strands *out, awt_error *error)
+{
+    geom_guides guides = {0};
+    geom_strands made = {0};
+    awt_status status = take_guides(binding, frame, &guides, error);
+    if (status == AWT_OK) {
+        status = geom_guides_strands(binding, &guides, &made, error);
+    }
+    if (status == AWT_OK) {
+        *out = made;
+    }
     geom_guides_fini(&guides);
     return status;
 }

@@ -25,16 +25,34 @@ typedef struct geom_guides {
     uint32_t wisps, sections;
     float *centres; /* [wisps * sections][3] */
     float *frames;  /* [wisps * sections][4]: section frame to head frame, x y z w */
+
+    /* What the next delta is made to, of frames by geom_read_guides_delta; else NULL. [wisps * sections][6] */
+    uint16_t *numbers;
     uint32_t patch_count;
     awt_pose head;
     int64_t time_us;
 } geom_guides;
 
-/* Reads a frame of guides, of either form. `out` is written on success only: geom_guides_fini. AWT_BAD_VALUE where the
- * frame is of another groom than the binding; else the errors of geom_read_frame. */
+/* Reads a frame of guides that stands for itself (GLB with meshes). `out` is written on success only: geom_guides_fini.
+ * AWT_BAD_VALUE where the frame is of another groom than the binding; else the errors of geom_read_frame. */
 awt_status geom_read_guides(const geom_binding *binding, const void *bytes, size_t size, geom_guides *out,
                             awt_error *error);
 void geom_guides_fini(geom_guides *guides);
+
+/* Reads a frame of guides that geom_encode_delta wrote: whole, where its base sequence is 0, or for who has its base, a
+ * frame by this, with the number that its sender named it by. `base` may be NULL, and does not matter where the frame
+ * is whole. `out`, which is not `base`, holds nothing or an earlier frame, whose memory is used again; it is written on
+ * success only: geom_guides_fini. AWT_BAD_VALUE (it is for another binding or base), AWT_BAD_FORMAT, AWT_TRUNCATED,
+ * AWT_LIMIT, AWT_NO_MEMORY. */
+awt_status geom_read_guides_delta(geom_delta_reader *reader, const geom_binding *binding, const void *bytes,
+                                  size_t size, const geom_guides *base, uint64_t base_sequence, geom_guides *out,
+                                  awt_error *error);
+
+/* The strands of guides that were read with that binding. `out` holds nothing or an earlier frame, whose memory is used
+ * again where it fits; it is written on success only: geom_strands_fini. AWT_BAD_VALUE (guides of another binding),
+ * AWT_NO_MEMORY. */
+awt_status geom_guides_strands(const geom_binding *binding, const geom_guides *guides, geom_strands *out,
+                               awt_error *error);
 
 /* The strands of a frame of any kind. `binding` is asked for guides only and may be NULL for others. `out` as
  * geom_read_frame; its kind says what the frame held. Errors of both. */

@@ -76,7 +76,7 @@ static void table_of_guides(FILE *text, const guides_row rows[GUIDES_KINDS], siz
         text);
     for (int i = 0; i < GUIDES_KINDS; i++) {
         const guides_row *r = &rows[i];
-        fprintf(text, "%-12s %5.0f | %4u %5u | %6.3f %8.3f | %6.0f %8.3f | %7.2f | %8.3f %7.3f | %6.2f\n", r->kind,
+        fprintf(text, "%-12s %5.0f | %4u %5u | %6.3f %8.3f | %6.0f %8.3f | %7.2f | %8.3f %7.3f | %6.2f\n", r->name,
                 r->nodes, r->position_bits, r->turn_bits, r->encode_ms, r->receive_ms, r->bytes, r->bytes / r->nodes,
                 r->entropy_bits, r->max_error_mm, r->mean_error_mm, r->bytes * 8 * ENCODE_FRAME_RATE * 1e-6);
     }
@@ -89,6 +89,8 @@ static void json_guides(jsonout *j, const guides_row *r)
 {
     jsonout_object(j, NULL);
     jsonout_text(j, "kind", r->kind);
+    jsonout_bool(j, "delta", r->delta);
+    jsonout_text(j, "name", r->name);
     jsonout_real(j, "nodes", r->nodes);
     jsonout_unsigned(j, "quantisation_bits", r->position_bits);
     jsonout_unsigned(j, "turn_bits", r->turn_bits);

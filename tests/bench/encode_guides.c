@@ -9,7 +9,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const char *const KINDS[GUIDES_KINDS] = {"guides", "guides bound", "nodes"};
+static const guides_row ROWS[GUIDES_KINDS] = {{.name = "guides", .kind = "guides"},
+                                              {.name = "guides whole", .kind = "guides"},
+                                              {.name = "guides delta", .kind = "guides", .delta = true},
+                                              {.name = "nodes", .kind = "nodes"}};
 
 awt_status guides_subject_init(guides_subject *s, const awt_groom *groom, uint32_t frames, awt_error *error)
 {
@@ -17,11 +20,12 @@ awt_status guides_subject_init(guides_subject *s, const awt_groom *groom, uint32
     *s = (guides_subject){0};
     awt_groom_get_info(groom, &info);
     awt_status status = geom_binding_write(groom, NULL, 0, &s->binding_bytes, error);
-    for (int form = 0; form < 2 && status == AWT_OK; form++) {
-        const geom_layout_def def = {.kind = GEOM_GUIDES, .bound = form == GUIDES_BOUND};
-        status = geom_layout_create(groom, &def, &s->layouts[form], error);
-        status = status == AWT_OK ? geom_scratch_create(s->layouts[form], &s->scratches[form], error) : status;
-    }
+    status = status == AWT_OK ? geom_layout_create(groom, &(geom_layout_def){.kind = GEOM_GUIDES}, &s->layout, error)
+                              : status;
+    status = status == AWT_OK ? geom_scratch_create(s->layout, &s->scratch, error) : status;
+    status = status == AWT_OK ? geom_quantised_create(s->layout, &s->base, error) : status;
+    status = status == AWT_OK ? geom_quantised_create(s->layout, &s->now, error) : status;
+    status = status == AWT_OK ? geom_delta_reader_create(&s->reader, error) : status;
     if (status != AWT_OK) {
         return status;
     }
@@ -44,10 +48,14 @@ awt_status guides_subject_init(guides_subject *s, const awt_groom *groom, uint32
 
 void guides_subject_fini(guides_subject *s)
 {
-    for (int form = 0; form < 2; form++) {
-        geom_scratch_destroy(s->scratches[form]);
-        geom_layout_destroy(s->layouts[form]);
-    }
+    geom_scratch_destroy(s->scratch);
+    geom_layout_destroy(s->layout);
+    geom_quantised_destroy(s->base);
+    geom_quantised_destroy(s->now);
+    geom_delta_reader_destroy(s->reader);
+    geom_guides_fini(&s->base_got);
+    geom_guides_fini(&s->got);
+    geom_strands_fini(&s->strands);
     geom_binding_destroy(s->binding);
     geom_buffer_fini(&s->frame);
     free(s->nodes);
@@ -73,30 +81,73 @@ static void compare(const geom_strands *got, const float *points, guides_row *su
     sum->mean_error_mm += total / (double)count * 1e3;
 }
 
-static awt_status measure_form(guides_subject *s, int form, geom_frame_def *def, const float *points, awt_error *error)
+static void take(guides_subject *s, int kind, const geom_frame_stats *stats, const float *points)
+{
+    guides_row *sum = &s->sums[kind];
+    sum->nodes += s->layout->strands * (double)s->layout->points_per_strand;
+    sum->entropy_bits += stats->entropy_bits / (s->layout->strands * (double)s->layout->points_per_strand);
+    sum->bytes += (double)s->frame.size;
+    compare(&s->strands, points, sum);
+}
+
+static awt_status measure_keyframe(guides_subject *s, geom_frame_def *def, const float *points, awt_error *error)
 {
     geom_frame_stats stats;
-    geom_strands got = {0};
-    guides_row *sum = &s->sums[form];
     def->measure = true;
-    awt_status status = geom_encode(s->layouts[form], s->scratches[form], def, &s->frame, &stats, error);
-    sum->entropy_bits += status == AWT_OK ? stats.entropy_bits / stats.vertices : 0;
+    awt_status status = geom_encode(s->layout, s->scratch, def, &s->frame, &stats, error);
     def->measure = false;
     double begin = bench_now_ms();
     if (status == AWT_OK) {
-        status = geom_encode(s->layouts[form], s->scratches[form], def, &s->frame, &stats, error);
+        status = geom_encode(s->layout, s->scratch, def, &s->frame, NULL, error);
     }
-    s->encode_ms[form][s->done] = bench_now_ms() - begin;
+    s->encode_ms[GUIDES_KEYFRAME][s->done] = bench_now_ms() - begin;
+    geom_strands_fini(&s->strands);
     begin = bench_now_ms();
     if (status == AWT_OK) {
-        status = geom_receive_frame(s->binding, s->frame.bytes, s->frame.size, &got, error);
+        status = geom_receive_frame(s->binding, s->frame.bytes, s->frame.size, &s->strands, error);
     }
-    s->receive_ms[form][s->done] = bench_now_ms() - begin;
+    s->receive_ms[GUIDES_KEYFRAME][s->done] = bench_now_ms() - begin;
     if (status == AWT_OK) {
-        sum->nodes += stats.vertices;
-        sum->bytes += (double)s->frame.size;
-        compare(&got, points, sum);
-        geom_strands_fini(&got);
+        take(s, GUIDES_KEYFRAME, &stats, points);
+    }
+    return status;
+}
+
+/* Against nothing, or against the frame before; `now` is made again, which takes its time. */
+static awt_status measure_numbers(guides_subject *s, int kind, const geom_frame_def *frame, const float *points,
+                                  awt_error *error)
+{
+    const geom_quantise_def quantise = {.points = frame->points, .frames = frame->frames};
+    geom_delta_def def = {.base = kind == GUIDES_DELTA ? s->base : NULL,
+                          .now = s->now,
+                          .base_sequence = kind == GUIDES_DELTA ? s->taken : 0,
+                          .sequence = s->taken + 1,
+                          .head = frame->head,
+                          .time_us = frame->time_us,
+                          .measure = true};
+    geom_frame_stats stats;
+    uint32_t clamped = 0;
+    awt_status status = geom_encode_delta(s->layout, s->scratch, &def, &s->frame, &stats, error);
+    def.measure = false;
+    double begin = bench_now_ms();
+    if (status == AWT_OK) {
+        status = geom_quantise(s->layout, &quantise, s->now, &clamped, error);
+    }
+    if (status == AWT_OK) {
+        status = geom_encode_delta(s->layout, s->scratch, &def, &s->frame, NULL, error);
+    }
+    s->encode_ms[kind][s->done] = bench_now_ms() - begin;
+    begin = bench_now_ms();
+    if (status == AWT_OK) {
+        status = geom_read_guides_delta(s->reader, s->binding, s->frame.bytes, s->frame.size, &s->base_got, s->taken,
+                                        &s->got, error);
+    }
+    if (status == AWT_OK) {
+        status = geom_guides_strands(s->binding, &s->got, &s->strands, error);
+    }
+    s->receive_ms[kind][s->done] = bench_now_ms() - begin;
+    if (status == AWT_OK) {
+        take(s, kind, &stats, points);
     }
     return status;
 }
@@ -120,20 +171,41 @@ static awt_status measure_nodes(guides_subject *s, const awt_forest *forest, con
     return status;
 }
 
+/* This frame's numbers become the base, here and at the receiver, who has them whole. */
+static awt_status keep(guides_subject *s, const geom_frame_def *frame, awt_error *error)
+{
+    const geom_delta_def def = {.now = s->now, .sequence = s->taken + 1, .head = frame->head};
+    awt_status status = geom_encode_delta(s->layout, s->scratch, &def, &s->frame, NULL, error);
+    if (status == AWT_OK) {
+        status =
+            geom_read_guides_delta(s->reader, s->binding, s->frame.bytes, s->frame.size, NULL, 0, &s->base_got, error);
+    }
+    geom_quantised *swap = s->base;
+    s->base = s->now;
+    s->now = swap;
+    s->taken++;
+    return status;
+}
+
 awt_status guides_measure(guides_subject *s, const awt_forest *forest, const float *centres, const float *frames,
-                          const float *points, awt_error *error)
+                          const float *points, bool measured, awt_error *error)
 {
     geom_frame_def def = {
         .points = centres, .frames = frames, .head = awt_forest_head(forest), .time_us = awt_forest_time(forest)};
-    awt_status status = measure_form(s, GUIDES_WHOLE, &def, points, error);
-    if (status == AWT_OK) {
-        status = measure_form(s, GUIDES_BOUND, &def, points, error);
+    const geom_quantise_def quantise = {.points = centres, .frames = frames};
+    uint32_t clamped = 0;
+    awt_status status = geom_quantise(s->layout, &quantise, s->now, &clamped, error);
+    if (measured && status == AWT_OK) {
+        status = measure_keyframe(s, &def, points, error);
     }
-    if (status == AWT_OK) {
+    for (int kind = GUIDES_WHOLE; kind <= GUIDES_DELTA && measured && status == AWT_OK; kind++) {
+        status = kind == GUIDES_DELTA && s->taken == 0 ? AWT_OK : measure_numbers(s, kind, &def, points, error);
+    }
+    if (measured && status == AWT_OK) {
         status = measure_nodes(s, forest, &def, error);
     }
-    s->done += status == AWT_OK;
-    return status;
+    s->done += measured && status == AWT_OK;
+    return status == AWT_OK ? keep(s, &def, error) : status;
 }
 
 static double median(double *values, uint32_t count)
@@ -147,9 +219,11 @@ void guides_rows(guides_subject *s, guides_row rows[GUIDES_KINDS])
     for (int k = 0; k < GUIDES_KINDS; k++) {
         guides_row *row = &rows[k];
         *row = s->sums[k];
-        row->kind = KINDS[k];
-        row->position_bits = k == GUIDES_NODES ? 0 : (uint32_t)s->layouts[k]->box.bits;
-        row->turn_bits = k == GUIDES_NODES ? 0 : (uint32_t)s->layouts[k]->attributes.turn_bits;
+        row->name = ROWS[k].name;
+        row->kind = ROWS[k].kind;
+        row->delta = ROWS[k].delta;
+        row->position_bits = k == GUIDES_NODES ? 0 : (uint32_t)s->layout->box.bits;
+        row->turn_bits = k == GUIDES_NODES ? 0 : (uint32_t)s->layout->attributes.turn_bits;
         row->nodes /= s->done;
         row->bytes /= s->done;
         row->entropy_bits /= s->done;

@@ -352,8 +352,8 @@ static awt_status measure_all(const encode_plan *plan, hair *h, subject subjects
         for (int k = 0; k < ENCODE_SUBJECTS && measured && status == AWT_OK; k++) {
             status = measure_frame(h, &subjects[k], time_us, error);
         }
-        if (measured && status == AWT_OK) {
-            status = guides_measure(guides, h->forest, h->centres, h->frames, h->points, error);
+        if (status == AWT_OK) {
+            status = guides_measure(guides, h->forest, h->centres, h->frames, h->points, measured, error);
         }
         progress_show(&bar, (double)n / frames, "");
     }

@@ -50,7 +50,6 @@ function checkFrame({ json, node }, faults) {
   if (node.extras?.kind === 'guides') {
     expect(/^[0-9a-f]{16}$/.test(node.extras.binding), 'no binding is named');
     expect(node.extras.turn_bits >= 10 && node.extras.turn_bits <= 14, `turns of ${node.extras.turn_bits} bits`);
-    expect(typeof node.extras.bound === 'boolean', 'it does not say whether it is bound');
   } else {
     expect(['full', 'fifth', 'guides'].includes(node.extras?.level), `no level is called ${node.extras?.level}`);
     expect(node.extras?.strands <= node.extras?.full_strands, 'it has more strands than the hair');
@@ -75,9 +74,6 @@ function checkBounds(primitive, faults) {
   const { position, indices } = primitive.accessors;
   if (indices.count !== primitive.indices.length || indices.componentType !== 5123 || primitive.mode !== 4) {
     faults.push('not TRIANGLES of unsigned shorts');
-  }
-  if (!primitive.positions) {
-    return;
   }
   const least = [Infinity, Infinity, Infinity], greatest = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < primitive.positions.length; i++) {
@@ -177,7 +173,7 @@ async function checkFile(file) {
     checkBounds(primitive, faults);
     checkNumbers(primitive, faults);
     checkTriangles(primitive, kind, here, points, faults);
-    const values = primitive.positions ?? primitive.numbers._OFFSET;
+    const values = primitive.positions;
     if (primitive.extras[names.first] !== next || values.length !== here * floatsAStrand) {
       faults.push(`the patch at strand ${primitive.extras[names.first]} does not follow strand ${next}`);
     }

@@ -1,11 +1,13 @@
 // check_receiver.mjs RECEIVER.wasm FOLDER: the receiver as WebAssembly makes strands of frames that the C program simulated.
 //
-// FOLDER holds NAME.awtb (bindings) and NAME-*.glb with FILE.glb.strands.f32 beside each: the server's strand points (raw
-// little-endian floats). Every point must be within 0.2 mm of the server's, and where FILE.glb.received.f32 is there, what
-// the receiver makes of the frame in C, every bit the same. A reader written from proto/GEOMETRY.md alone (guides.mjs) must
-// come within a micrometre of it, too. One line a file; exit 1 on any fault.
+// FOLDER holds NAME.awtb (bindings) and NAME-N.glb (guides for any viewer), NAME-N.whole and NAME-N.delta (as numbers, the
+// latter against those of NAME-(N-1)) with FILE.strands.f32 beside each: the server's strand points (raw little-endian
+// floats). Every point must be within 0.2 mm of the server's, and where FILE.received.f32 is there, what the receiver makes
+// of the frame in C, every bit the same. A reader written from proto/GEOMETRY.md and DELTAS.md alone (guides.mjs, delta.mjs)
+// must come within two micrometres of it, too. One line a file; exit 1 on any fault.
 import { readFileSync, readdirSync, existsSync } from 'node:fs';
 import { join } from 'node:path';
+import { readNumbers } from './delta.mjs';
 import * as document from './guides.mjs';
 
 const ALLOWED_M = 0.2e-3, ROUNDING_M = 2e-6;
@@ -50,8 +52,10 @@ function readFloats(file) {
   return new Float32Array(raw.buffer.slice(raw.byteOffset, raw.byteOffset + raw.byteLength));
 }
 
-function receive(binding, bytes) {
-  if (!withBytes(bytes, (address, length) => receiver.receiver_frame(binding, address, length))) {
+/** `baseSequence` null: a frame for any viewer. */
+function receive(binding, bytes, baseSequence) {
+  if (!withBytes(bytes, (address, length) => (baseSequence === null ? receiver.receiver_frame(binding, address, length)
+    : receiver.receiver_numbers(binding, address, length, baseSequence)))) {
     throw new Error(whatFailed());
   }
   const floats = receiver.receiver_strands() * receiver.receiver_points() * 3;
@@ -68,10 +72,11 @@ function distances(points, expected) {
   return { worst, mean: sum / (points.length / 3) };
 }
 
-/** What to say of a frame; throws what is wrong with it. */
-async function check(binding, described, file) {
+/** What to say of a frame; throws what is wrong with it. `frames`: those of numbers so far, by their sequence. */
+async function check(binding, described, frames, file) {
   const bytes = readFileSync(file), expected = readFloats(`${file}.strands.f32`);
-  const begin = performance.now(), points = receive(binding, bytes), took = performance.now() - begin;
+  const numbers = file.endsWith('.glb') ? null : await readNumbers(bytes, frames);
+  const begin = performance.now(), points = receive(binding, bytes, numbers && numbers.baseSequence), took = performance.now() - begin;
   if (points.length !== expected.length) {
     throw new Error(`${points.length} numbers, not ${expected.length}`);
   }
@@ -85,9 +90,13 @@ async function check(binding, described, file) {
       throw new Error('the strands are not those of the receiver in C, bit by bit');
     }
   }
-  const { worst: apart } = distances(await document.strandsOfGuides(described, bytes), points);
+  const said = numbers ? document.strandsOfNumbers(described, numbers) : await document.strandsOfGuides(described, bytes);
+  const { worst: apart } = distances(said, points);
   if (!(apart <= ROUNDING_M)) {
     throw new Error(`a point is ${(apart * 1e6).toFixed(1)} micrometres from what GEOMETRY.md says`);
+  }
+  if (numbers) {
+    frames.set(numbers.sequence, numbers);
   }
   const strands = receiver.receiver_strands(), each = receiver.receiver_points();
   return `${strands} strands of ${each} from ${bytes.length} bytes in ${took.toFixed(1)} ms, ` +
@@ -97,10 +106,11 @@ async function check(binding, described, file) {
 let passed = 0, failed = 0;
 for (const name of readdirSync(folder).filter((file) => file.endsWith('.awtb'))) {
   const stem = name.slice(0, -'.awtb'.length), binding = readBinding(join(folder, name));
-  const described = document.readBinding(readFileSync(join(folder, name)));
-  for (const file of readdirSync(folder).filter((other) => other.startsWith(`${stem}-`) && other.endsWith('.glb'))) {
+  const described = document.readBinding(readFileSync(join(folder, name))), frames = new Map();
+  const files = readdirSync(folder).filter((other) => other.startsWith(`${stem}-`) && /\.(glb|whole|delta)$/.test(other));
+  for (const file of files.sort()) { /* of each number the delta first, for which the frame before is still kept */
     try {
-      console.log(`ok   ${file}: ${await check(binding, described, join(folder, file))}`);
+      console.log(`ok   ${file}: ${await check(binding, described, frames, join(folder, file))}`);
       passed++;
     } catch (error) {
       console.log(`FAIL ${file}: ${error.message}`);

@@ -87,20 +87,35 @@ function decodePrimitive(draco, json, binary, primitive) {
   const { POSITION: position, _STRAND, TEXCOORD_0, _WIDTH, ...others } = extension.attributes; // three are check_others.mjs'
   const attribute = (decoder, mesh, id) => decoder.GetAttributeByUniqueId(mesh, id);
   const decoded = withMesh(draco, data, () => {}, (decoder, mesh) => ({
-    positions: position === undefined ? null : readPositions(draco, decoder, mesh, attribute(decoder, mesh, position)),
+    positions: readPositions(draco, decoder, mesh, attribute(decoder, mesh, position)),
     numbers: Object.fromEntries(Object.entries(others).map(([name, id]) =>
       [name, readNumbers(draco, decoder, mesh, attribute(decoder, mesh, id))])),
     indices: readIndices(draco, decoder, mesh),
   }));
-  const box = position === undefined ? null
-    : withMesh(draco, data, (decoder) => decoder.SkipAttributeTransform(draco.POSITION),
-      (decoder, mesh) => readBox(draco, decoder, mesh, attribute(decoder, mesh, position)));
+  const box = withMesh(draco, data, (decoder) => decoder.SkipAttributeTransform(draco.POSITION),
+    (decoder, mesh) => readBox(draco, decoder, mesh, attribute(decoder, mesh, position)));
   return { ...decoded, box };
 }
 
-/** { json, node, primitives: [{ positions, numbers, indices, box, mode, extras, accessors }] } of a frame: positions and box
- * are null where there are none, numbers and accessors go by the attribute's name (and accessors.indices). `most`: primitives
- * to read. */
+/** The whole numbers [points][components] of a point cloud with one attribute. */
+export async function readCloud(data) {
+  const draco = dracoModule ??= await draco3d.createDecoderModule({});
+  const decoder = new draco.Decoder(), cloud = new draco.PointCloud();
+  try {
+    const status = decoder.DecodeArrayToPointCloud(data, data.byteLength, cloud);
+    if (!status.ok() || cloud.num_attributes() !== 1) {
+      throw new Error(`draco3d: ${status.error_msg()}`);
+    }
+    return readNumbers(draco, decoder, cloud, decoder.GetAttribute(cloud, 0));
+  } finally {
+    draco.destroy(cloud);
+    draco.destroy(decoder);
+  }
+}
+
+/** { json, node, primitives: [{ positions, numbers, indices, box, mode, extras, accessors }] } of a frame:
+ * numbers and accessors go by the attribute's name (and accessors.indices). `most`: primitives to
+ * read. */
 export async function readFrame(bytes, most = Infinity) {
   dracoModule ??= await draco3d.createDecoderModule({});
   const { json, binary } = splitGlb(bytes);

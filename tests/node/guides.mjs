@@ -1,8 +1,8 @@
-// guides.mjs: strands from a frame of guides and its binding, written from proto/GEOMETRY.md with nothing of awtd's own code
+// guides.mjs: strands from frames of guides and their binding, written from proto/GEOMETRY.md with nothing of awtd's own code
 // (and in doubles, so that it agrees to rounding, not to the bit).
 import { readFrame } from './frame.mjs';
 
-const HEAD_BYTES = 48;
+const HEAD_BYTES = 48, PIECE_SECTIONS = 16384;
 
 /** { id, strands, points, wisps, sections, turnBits, positionStep, strandAfter, tree, restCentre, restFrame, offsets }. */
 export function readBinding(bytes) {
@@ -44,30 +44,38 @@ function turnOf(numbers, bits) {
 }
 
 /** Centres and frames of the wisps of one primitive, pushed onto the lists. */
-function readSections(binding, primitive, bound, centres, frames) {
-  const { sections, tree, positionStep, turnBits } = binding, first = primitive.extras.first_wisp;
-  const turns = [];
+function readSections(binding, primitive, centres, frames) {
+  const { sections, turnBits } = binding, first = primitive.extras.first_wisp * sections;
   for (let n = 0; n < primitive.extras.wisps * sections; n++) {
-    const w = first + Math.floor(n / sections), i = n % sections, rest = three(binding.restCentre, first * sections + n);
-    const sibling = w > first && tree[w] === tree[w - 1], back = sibling ? sections : i > 0 ? 1 : 0;
-    let numbers = [...three(primitive.numbers._TURN, n)], centre;
-    if (bound) {
-      const offset = [...three(primitive.numbers._OFFSET, n)].map((steps) => steps * positionStep);
-      centre = rest;
-      if (back) {
-        numbers = numbers.map((number, k) => (number + turns[n - back][k]) << 16 >> 16);
-        const before = centres[centres.length - back], restBefore = three(binding.restCentre, first * sections + n - back);
-        const turn = turnOf(sibling ? turns[n - back] : numbers, turnBits);
-        centre = rotate(turn, rest.map((x, k) => x - restBefore[k])).map((x, k) => x + before[k]);
-      }
-      centre = centre.map((x, k) => x + offset[k]);
-    } else {
-      centre = [...three(primitive.positions, n)];
+    const turn = turnOf([...three(primitive.numbers._TURN, n)], turnBits);
+    centres.push([...three(primitive.positions, n)]);
+    frames.push(product(turn, binding.restFrame.slice(4 * (first + n), 4 * (first + n) + 4)));
+  }
+}
+
+const signed = (number) => (number << 17) >> 17; // of 15 bits
+
+/** The same of the numbers of all wisps. */
+function sectionsOfNumbers(binding, kept, centres, frames) {
+  const { sections, tree, positionStep, turnBits } = binding, room = Math.floor(PIECE_SECTIONS / sections);
+  const turns = [];
+  for (let n = 0, ofTree = 0; n < binding.wisps * sections; n++) {
+    const w = Math.floor(n / sections), i = n % sections, rest = three(binding.restCentre, n);
+    if (i === 0) {
+      ofTree = w > 0 && tree[w] === tree[w - 1] ? ofTree + 1 : 0;
+    }
+    const sibling = ofTree % room > 0, back = sibling ? sections : i > 0 ? 1 : 0;
+    const offset = [0, 1, 2].map((k) => signed(kept[6 * n + k]) * positionStep);
+    let numbers = [3, 4, 5].map((k) => signed(kept[6 * n + k])), centre = rest;
+    if (back) {
+      numbers = numbers.map((number, k) => (number + turns[n - back][k]) << 16 >> 16);
+      const before = centres[n - back], restBefore = three(binding.restCentre, n - back);
+      const turn = turnOf(sibling ? turns[n - back] : numbers, turnBits);
+      centre = rotate(turn, rest.map((x, k) => x - restBefore[k])).map((x, k) => x + before[k]);
     }
     turns.push(numbers);
-    centres.push(centre);
-    const node = first * sections + n;
-    frames.push(product(turnOf(numbers, turnBits), binding.restFrame.slice(4 * node, 4 * node + 4)));
+    centres.push(centre.map((x, k) => x + offset[k]));
+    frames.push(product(turnOf(numbers, turnBits), binding.restFrame.slice(4 * n, 4 * n + 4)));
   }
 }
 
@@ -92,13 +100,8 @@ function station(binding, centres, frames, base, i) {
 }
 
 /** Strand points [strands][points][3], flat. */
-export async function strandsOfGuides(binding, bytes) {
-  const frame = await readFrame(bytes), { extras } = frame.node;
-  if (extras.binding !== binding.id) {
-    throw new Error(`the guides belong to ${extras.binding}, not to ${binding.id}`);
-  }
-  const centres = [], frames = [], out = new Float32Array(3 * binding.strands * binding.points);
-  frame.primitives.forEach((primitive) => readSections(binding, primitive, extras.bound, centres, frames));
+function strandsOfSections(binding, centres, frames) {
+  const out = new Float32Array(3 * binding.strands * binding.points);
   for (let w = 0, s = 0; w < binding.wisps; w++) {
     const stations = Array.from({ length: binding.points }, (_, i) =>
       station(binding, centres, frames, w * binding.sections, i));
@@ -110,4 +113,26 @@ export async function strandsOfGuides(binding, bytes) {
     }
   }
   return out;
+}
+
+function checkBinding(binding, id) {
+  if (id !== binding.id) {
+    throw new Error(`the guides belong to ${id}, not to ${binding.id}`);
+  }
+}
+
+/** Strands of a frame for any viewer. */
+export async function strandsOfGuides(binding, bytes) {
+  const frame = await readFrame(bytes), centres = [], frames = [];
+  checkBinding(binding, frame.node.extras.binding);
+  frame.primitives.forEach((primitive) => readSections(binding, primitive, centres, frames));
+  return strandsOfSections(binding, centres, frames);
+}
+
+/** Strands of a frame of numbers (delta.mjs). */
+export function strandsOfNumbers(binding, frame) {
+  const centres = [], frames = [];
+  checkBinding(binding, frame.binding);
+  sectionsOfNumbers(binding, frame.numbers, centres, frames);
+  return strandsOfSections(binding, centres, frames);
 }

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double nowhere[3] = {0, 0, 0};
 
@@ -14,6 +15,16 @@ static void take(guides_fixture *f)
 {
     awt_forest_guides(f->forest, f->centres, f->frames);
     awt_groom_strands(f->groom, f->centres, f->frames, f->scratch, f->points);
+}
+
+/* The hair as it is becomes the base. */
+static void receive_base(guides_fixture *f)
+{
+    geom_strands strands = {0};
+    guides_fixture_encode(f, GUIDES_WHOLE, NULL);
+    CHECK_INT(guides_fixture_receive(f, GUIDES_WHOLE, &strands, NULL), AWT_OK);
+    geom_strands_fini(&strands);
+    guides_fixture_keep(f);
 }
 
 void guides_fixture_init(guides_fixture *f, const awt_groom *groom, const char *style)
@@ -36,14 +47,15 @@ void guides_fixture_init(guides_fixture *f, const awt_groom *groom, const char *
     CHECK_INT(geom_binding_write(groom, f->binding_bytes, f->binding_size, &f->binding_size, NULL), AWT_OK);
     CHECK_INT(geom_binding_read(f->binding_bytes, f->binding_size, &f->binding, NULL), AWT_OK);
     ASSERT(f->binding);
-    for (int form = 0; form < GUIDES_FORMS; form++) {
-        const geom_layout_def def = {.kind = GEOM_GUIDES, .bound = form == 1};
-        CHECK_INT(geom_layout_create(groom, &def, &f->layouts[form], NULL), AWT_OK);
-        ASSERT(f->layouts[form]);
-        CHECK_INT(geom_scratch_create(f->layouts[form], &f->scratches[form], NULL), AWT_OK);
-        ASSERT(f->scratches[form]);
-    }
+    CHECK_INT(geom_layout_create(groom, &(geom_layout_def){.kind = GEOM_GUIDES}, &f->layout, NULL), AWT_OK);
+    ASSERT(f->layout);
+    CHECK_INT(geom_scratch_create(f->layout, &f->encoder, NULL), AWT_OK);
+    CHECK_INT(geom_quantised_create(f->layout, &f->base, NULL), AWT_OK);
+    CHECK_INT(geom_quantised_create(f->layout, &f->now, NULL), AWT_OK);
+    CHECK_INT(geom_delta_reader_create(&f->reader, NULL), AWT_OK);
+    ASSERT(f->encoder && f->base && f->now && f->reader);
     take(f);
+    receive_base(f);
 }
 
 void guides_fixture_fini(guides_fixture *f)
@@ -55,10 +67,13 @@ void guides_fixture_fini(guides_fixture *f)
     free(f->points);
     free(f->binding_bytes);
     geom_binding_destroy(f->binding);
-    for (int form = 0; form < GUIDES_FORMS; form++) {
-        geom_scratch_destroy(f->scratches[form]);
-        geom_layout_destroy(f->layouts[form]);
-    }
+    geom_scratch_destroy(f->encoder);
+    geom_layout_destroy(f->layout);
+    geom_quantised_destroy(f->base);
+    geom_quantised_destroy(f->now);
+    geom_delta_reader_destroy(f->reader);
+    geom_guides_fini(&f->base_got);
+    geom_guides_fini(&f->got);
     geom_buffer_fini(&f->frame);
     *f = (guides_fixture){0};
 }
@@ -69,6 +84,28 @@ void guides_fixture_move(guides_fixture *f, const char *clip, int64_t time_us)
     take(f);
 }
 
+static awt_status encode_numbers(guides_fixture *f, int form, geom_frame_stats *stats, awt_error *error)
+{
+    const geom_quantise_def quantise = {.points = f->centres, .frames = f->frames};
+    const geom_delta_def def = {.base = form == GUIDES_DELTA ? f->base : NULL,
+                                .now = f->now,
+                                .base_sequence = form == GUIDES_DELTA ? f->base_sequence : 0,
+                                .sequence = f->base_sequence + 1,
+                                .head = awt_forest_head(f->forest),
+                                .time_us = awt_forest_time(f->forest)};
+    geom_frame_stats made = {0};
+    uint32_t clamped = 0;
+    awt_status status = geom_quantise(f->layout, &quantise, f->now, &clamped, error);
+    if (status == AWT_OK) {
+        status = geom_encode_delta(f->layout, f->encoder, &def, &f->frame, &made, error);
+    }
+    made.clamped_points = clamped;
+    if (stats) {
+        *stats = made;
+    }
+    return status;
+}
+
 void guides_fixture_encode(guides_fixture *f, int form, geom_frame_stats *stats)
 {
     awt_error error = {0};
@@ -76,17 +113,50 @@ void guides_fixture_encode(guides_fixture *f, int form, geom_frame_stats *stats)
                                 .frames = f->frames,
                                 .head = awt_forest_head(f->forest),
                                 .time_us = awt_forest_time(f->forest)};
-    CHECK_INT(geom_encode(f->layouts[form], f->scratches[form], &def, &f->frame, stats, &error), AWT_OK);
+    if (form == GUIDES_MESHES) {
+        CHECK_INT(geom_encode(f->layout, f->encoder, &def, &f->frame, stats, &error), AWT_OK);
+    } else {
+        CHECK_INT(encode_numbers(f, form, stats, &error), AWT_OK);
+    }
     CHECK_TEXT(error.text, "");
 }
 
-void guides_fixture_compare(const guides_fixture *f, double *greatest_m, double *mean_m)
+awt_status guides_fixture_receive(guides_fixture *f, int form, geom_strands *out, awt_error *error)
+{
+    unsigned char *copy = malloc(f->frame.size);
+    ASSERT(copy);
+    memcpy(copy, f->frame.bytes, f->frame.size);
+    awt_status status;
+    if (form == GUIDES_MESHES) {
+        status = geom_receive_frame(f->binding, copy, f->frame.size, out, error);
+    } else {
+        const geom_guides *base = form == GUIDES_DELTA ? &f->base_got : NULL;
+        status =
+            geom_read_guides_delta(f->reader, f->binding, copy, f->frame.size, base, f->base_sequence, &f->got, error);
+        status = status == AWT_OK ? geom_guides_strands(f->binding, &f->got, out, error) : status;
+    }
+    free(copy);
+    return status;
+}
+
+void guides_fixture_keep(guides_fixture *f)
+{
+    geom_quantised *numbers = f->base;
+    geom_guides got = f->base_got;
+    f->base = f->now;
+    f->now = numbers;
+    f->base_got = f->got;
+    f->got = got;
+    f->base_sequence++;
+}
+
+void guides_fixture_compare(guides_fixture *f, int form, double *greatest_m, double *mean_m)
 {
     const size_t points = (size_t)f->info.strand_count * f->info.points_per_strand;
     geom_strands back = {0};
     awt_error error = {0};
     *greatest_m = *mean_m = INFINITY;
-    CHECK_INT(geom_receive_frame(f->binding, f->frame.bytes, f->frame.size, &back, &error), AWT_OK);
+    CHECK_INT(guides_fixture_receive(f, form, &back, &error), AWT_OK);
     CHECK_TEXT(error.text, "");
     CHECK_INT(back.strand_count, f->info.strand_count);
     CHECK_INT(back.points_per_strand, f->info.points_per_strand);

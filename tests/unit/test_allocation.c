@@ -7,6 +7,8 @@
 #include "base/assert.h"
 #include "drawing.h"
 #include "unit/delta_fixture.h"
+#include "unit/fixture.h"
+#include "unit/guides_fixture.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -199,4 +201,32 @@ TEST(drawing_allocates_nothing_in_the_steady_state)
     }
     awt_forest_destroy(f);
     awt_groom_destroy(groom);
+}
+
+/* Deltas of guides, and whole frames of their numbers. */
+TEST(encoding_deltas_of_guides_allocates_nothing)
+{
+    guides_fixture f;
+    guides_fixture_init(&f, fixture_groom("long", 2000), "long");
+    guides_fixture_move(&f, "lean", 1500000);
+    guides_fixture_encode(&f, GUIDES_WHOLE, NULL);
+    const geom_quantise_def quantise = {.points = f.centres, .frames = f.frames};
+    geom_delta_def def = {.now = f.now, .sequence = 2, .head = awt_forest_head(f.forest)};
+    geom_buffer out = {0};
+    uint32_t clamped = 0;
+    for (int round = 0; round < 2; round++) {
+        count_begin();
+        def.base = NULL;
+        def.base_sequence = 0;
+        awt_status quantised = geom_quantise(f.layout, &quantise, f.now, &clamped, NULL);
+        awt_status whole = geom_encode_delta(f.layout, f.encoder, &def, &out, NULL, NULL);
+        def.base = f.base;
+        def.base_sequence = 1;
+        awt_status delta = geom_encode_delta(f.layout, f.encoder, &def, &out, NULL, NULL);
+        unsigned counted = count_end();
+        CHECK(round == 0 ? counted > 0 : counted == 0); /* `out` has grown */
+        CHECK(quantised == AWT_OK && whole == AWT_OK && delta == AWT_OK);
+    }
+    geom_buffer_fini(&out);
+    guides_fixture_fini(&f);
 }

@@ -145,11 +145,12 @@ TEST(bench_writes_what_frames_cost_as_json)
                 check_delta_row(&json, row, i < 21 ? 1 : 3, movings[i % 3]);
             }
         }
-        static const char *const guides[] = {"guides", "guides bound", "nodes"};
+        static const char *const guides[] = {"guides", "guides whole", "guides delta", "nodes"};
         rows = json_member(&json, 0, "guides"), row = rows + 1;
-        CHECK_INT(json_items(&json, rows), 3);
-        for (int i = 0; i < 3 && json_items(&json, rows) == 3; i++, row = json.tokens[row].after) {
-            CHECK(json_is_text(&json, json_member(&json, row, "kind"), guides[i]));
+        CHECK_INT(json_items(&json, rows), 4);
+        for (int i = 0; i < 4 && json_items(&json, rows) == 4; i++, row = json.tokens[row].after) {
+            CHECK(json_is_text(&json, json_member(&json, row, "name"), guides[i]));
+            CHECK(json_is_text(&json, json_member(&json, row, "kind"), i < 3 ? "guides" : "nodes"));
             CHECK(number_at(&json, row, "nodes") > 100 && number_at(&json, row, "encode_ms") > 0);
             CHECK(number_at(&json, row, "receive_ms") > 0 && number_at(&json, row, "max_error_mm") <= 0.2);
             CHECK_NEAR(number_at(&json, row, "mbit_s_at_60hz"), number_at(&json, row, "bytes") * 8 * 60e-6, 1e-9);

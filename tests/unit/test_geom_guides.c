@@ -35,13 +35,10 @@ TEST(geom_numbers_come_back_whatever_they_are)
         CHECK_BYTES(back, numbers, sizeof numbers);
         symbols[37] = (uint16_t)(1 << bits);
         CHECK(!numbers_sum_up(bits, symbols, 100, back));
-        CHECK(numbers_plain(numbers, 100, symbols) < 1 << bits);
-        numbers_of_plain(symbols, 100, back);
-        CHECK_BYTES(back, numbers, sizeof numbers);
     }
 }
 
-/* The whole way of a clip's liveliest seconds, both forms. */
+/* The whole way of a clip's liveliest seconds, every form, each delta to the frame before. */
 static void check_clip(guides_fixture *f, const char *clip, int frames)
 {
     for (int n = 1; n <= frames; n++) {
@@ -50,13 +47,14 @@ static void check_clip(guides_fixture *f, const char *clip, int frames)
             geom_frame_stats stats;
             double greatest, mean;
             guides_fixture_encode(f, form, &stats);
-            guides_fixture_compare(f, &greatest, &mean);
+            guides_fixture_compare(f, form, &greatest, &mean);
             CHECK_INT(stats.clamped_points, 0);
             CHECK_INT(stats.vertices, f->info.finest_nodes);
-            CHECK(3 * stats.triangles >= stats.vertices); /* or decoders refuse it */
+            CHECK(form != GUIDES_MESHES || 3 * stats.triangles >= stats.vertices); /* or decoders refuse it */
             CHECK_NEAR(greatest, 0, ALLOWED_M);
             CHECK_NEAR(mean, 0, 0.35 * ALLOWED_M);
         }
+        guides_fixture_keep(f);
     }
 }
 
@@ -89,7 +87,10 @@ TEST(geom_guides_turn_all_the_way_round)
         geom_guides back = {0};
         double worst = 0;
         guides_fixture_encode(&f, form, NULL);
-        CHECK_INT(geom_read_guides(f.binding, f.frame.bytes, f.frame.size, &back, NULL), AWT_OK);
+        CHECK_INT(form == GUIDES_MESHES ? geom_read_guides(f.binding, f.frame.bytes, f.frame.size, &back, NULL)
+                                        : geom_read_guides_delta(f.reader, f.binding, f.frame.bytes, f.frame.size,
+                                                                 &f.base_got, f.base_sequence, &back, NULL),
+                  AWT_OK);
         for (uint32_t n = 0; back.frames && n < f.info.finest_nodes; n++) {
             const float *a = f.frames + 4 * n, *b = back.frames + 4 * n;
             double dot = fabs((double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2] + (double)a[3] * b[3]);
@@ -158,14 +159,22 @@ TEST(geom_guides_are_not_evaluated_with_another_binding)
     guides_fixture_init(&f, fixture_groom("long", 2000), "long");
     guides_fixture_init(&other, fixture_groom("long", 2001), "long"); /* alike but for its numbers */
     CHECK_INT(other.info.finest_nodes, f.info.finest_nodes);
-    for (int form = 0; form < GUIDES_FORMS; form++) {
+    guides_fixture_encode(&f, GUIDES_MESHES, NULL);
+    CHECK_INT(geom_receive_frame(other.binding, f.frame.bytes, f.frame.size, &strands, &error), AWT_BAD_VALUE);
+    CHECK(strstr(error.text, "another binding") != NULL);
+    CHECK_INT(geom_receive_frame(NULL, f.frame.bytes, f.frame.size, &strands, &error), AWT_BAD_VALUE);
+    CHECK_INT(geom_read_frame(f.frame.bytes, f.frame.size, &strands, &error), AWT_BAD_VALUE);
+    for (int form = GUIDES_WHOLE; form < GUIDES_FORMS; form++) {
+        geom_guides back = {0};
         guides_fixture_encode(&f, form, NULL);
-        CHECK_INT(geom_receive_frame(other.binding, f.frame.bytes, f.frame.size, &strands, &error), AWT_BAD_VALUE);
+        CHECK_INT(geom_read_guides_delta(f.reader, other.binding, f.frame.bytes, f.frame.size, &f.base_got,
+                                         f.base_sequence, &back, &error),
+                  AWT_BAD_VALUE);
         CHECK(strstr(error.text, "another binding") != NULL);
-        CHECK_INT(geom_receive_frame(NULL, f.frame.bytes, f.frame.size, &strands, &error), AWT_BAD_VALUE);
-        CHECK_INT(geom_read_frame(f.frame.bytes, f.frame.size, &strands, &error), AWT_BAD_VALUE);
-        CHECK(strands.positions == NULL);
+        CHECK(back.centres == NULL);
     }
+    CHECK_INT(geom_receive_frame(f.binding, f.frame.bytes, f.frame.size, &strands, &error), AWT_BAD_FORMAT);
+    CHECK(strands.positions == NULL);
     guides_fixture_fini(&other);
     guides_fixture_fini(&f);
 }
@@ -174,18 +183,22 @@ TEST(geom_guides_refuse_what_is_not_finite)
 {
     guides_fixture f;
     guides_fixture_init(&f, fixture_groom("long", 2000), "long");
-    for (int form = 0; form < GUIDES_FORMS; form++) {
-        geom_frame_def def = {.points = f.centres, .frames = f.frames, .head = awt_forest_head(f.forest)};
-        float *numbers[] = {f.centres + 50, f.frames + 50};
-        for (int k = 0; k < 2; k++) {
-            const float kept = *numbers[k];
-            *numbers[k] = k ? NAN : INFINITY;
-            CHECK_INT(geom_encode(f.layouts[form], f.scratches[form], &def, &f.frame, NULL, NULL), AWT_BAD_VALUE);
-            *numbers[k] = kept;
+    geom_frame_def def = {.points = f.centres, .frames = f.frames, .head = awt_forest_head(f.forest)};
+    geom_quantise_def quantise = {.points = f.centres, .frames = f.frames};
+    uint32_t clamped = 0;
+    float *numbers[] = {f.centres + 50, f.frames + 50};
+    for (int k = 0; k < 6; k++) {
+        const float wild[] = {NAN, INFINITY, 1e30f}, kept = *numbers[k % 2];
+        *numbers[k % 2] = wild[k / 2];
+        if (k != 4) { /* a centre that is only far is set onto the box */
+            CHECK_INT(geom_encode(f.layout, f.encoder, &def, &f.frame, NULL, NULL), AWT_BAD_VALUE);
+            CHECK_INT(geom_quantise(f.layout, &quantise, f.now, &clamped, NULL), AWT_BAD_VALUE);
         }
-        def.frames = NULL;
-        CHECK_INT(geom_encode(f.layouts[form], f.scratches[form], &def, &f.frame, NULL, NULL), AWT_BAD_VALUE);
+        *numbers[k % 2] = kept;
     }
+    def.frames = quantise.frames = NULL;
+    CHECK_INT(geom_encode(f.layout, f.encoder, &def, &f.frame, NULL, NULL), AWT_BAD_VALUE);
+    CHECK_INT(geom_quantise(f.layout, &quantise, f.now, &clamped, NULL), AWT_BAD_VALUE);
     geom_layout *layout = NULL;
     const geom_layout_def bits = {.kind = GEOM_GUIDES, .bits = 12}, stock = {.kind = GEOM_GUIDES, .stock = true};
     CHECK_INT(geom_layout_create(f.groom, &bits, &layout, NULL), AWT_BAD_VALUE);
@@ -195,45 +208,43 @@ TEST(geom_guides_refuse_what_is_not_finite)
 }
 
 /* Sections far from where the others would have them: the numbers end, and it is counted. */
-TEST(geom_bound_guides_count_what_no_number_reaches)
+TEST(geom_guides_count_what_no_number_reaches)
 {
     guides_fixture f;
     geom_frame_stats stats;
     guides_fixture_init(&f, fixture_groom("long", 2000), "long");
     f.centres[3 * 100] += 5;
-    guides_fixture_encode(&f, 1, &stats);
+    guides_fixture_encode(&f, GUIDES_WHOLE, &stats);
     CHECK(stats.clamped_points >= 1);
-    guides_fixture_encode(&f, 0, &stats);
+    guides_fixture_encode(&f, GUIDES_MESHES, &stats);
     CHECK_INT(stats.clamped_points, 1);
     guides_fixture_fini(&f);
 }
 
-/* Patches of trees at rest keep their bytes, in either form. */
+/* Patches of trees at rest keep their bytes. */
 TEST(geom_guides_keep_patches_that_rest)
 {
     guides_fixture f;
     geom_buffer kept = {0};
     guides_fixture_init(&f, fixture_groom("long-curly", 10000), "long-curly");
-    for (int form = 0; form < GUIDES_FORMS; form++) {
-        const uint32_t patches = geom_layout_patches(f.layouts[form]);
-        bool unchanged[64] = {false};
-        CHECK(patches >= 1 && patches <= 64);
-        guides_fixture_encode(&f, form, NULL);
-        for (uint32_t i = 0; i < patches; i++) {
-            unchanged[i] = i % 2 == 0;
-        }
-        const geom_frame_def def = {.points = f.centres,
-                                    .frames = f.frames,
-                                    .head = awt_forest_head(f.forest),
-                                    .time_us = awt_forest_time(f.forest),
-                                    .unchanged = unchanged,
-                                    .previous = &f.frame};
-        geom_frame_stats stats;
-        CHECK_INT(geom_encode(f.layouts[form], f.scratches[form], &def, &kept, &stats, NULL), AWT_OK);
-        CHECK_INT(stats.encoded_patches, patches / 2);
-        CHECK_U64(kept.size, f.frame.size);
-        CHECK(kept.size == f.frame.size && memcmp(kept.bytes, f.frame.bytes, kept.size) == 0);
+    const uint32_t patches = geom_layout_patches(f.layout);
+    bool unchanged[64] = {false};
+    CHECK(patches >= 1 && patches <= 64);
+    guides_fixture_encode(&f, GUIDES_MESHES, NULL);
+    for (uint32_t i = 0; i < patches; i++) {
+        unchanged[i] = i % 2 == 0;
     }
+    const geom_frame_def def = {.points = f.centres,
+                                .frames = f.frames,
+                                .head = awt_forest_head(f.forest),
+                                .time_us = awt_forest_time(f.forest),
+                                .unchanged = unchanged,
+                                .previous = &f.frame};
+    geom_frame_stats stats;
+    CHECK_INT(geom_encode(f.layout, f.encoder, &def, &kept, &stats, NULL), AWT_OK);
+    CHECK_INT(stats.encoded_patches, patches / 2);
+    CHECK_U64(kept.size, f.frame.size);
+    CHECK(kept.size == f.frame.size && memcmp(kept.bytes, f.frame.bytes, kept.size) == 0);
     geom_buffer_fini(&kept);
     guides_fixture_fini(&f);
 }
@@ -249,51 +260,50 @@ static void write_beside(const char *folder, const char *name, const char *endin
     CHECK(file && fclose(file) == 0);
 }
 
-/* The whole numbers of `frame`, attribute by attribute, of its one patch. */
-static void write_numbers(const guides_fixture *f, int form, const char *folder, const char *name)
+/* The turns of `frame`, of its one patch. */
+static void write_turns(const guides_fixture *f, const char *folder, const char *name)
 {
     const size_t nodes = f->info.finest_nodes;
     const guides_part all = {0, f->binding->wisps};
-    int16_t *numbers = calloc(6 * nodes, sizeof *numbers), *turns = numbers + (form ? 3 * nodes : 0);
-    vec3 *rebuilt = calloc(nodes, sizeof *rebuilt);
-    CHECK_INT(geom_layout_patches(f->layouts[form]), 1);
+    int16_t *turns = calloc(3 * nodes, sizeof *turns);
+    CHECK_INT(geom_layout_patches(f->layout), 1);
     CHECK(guides_turns(f->binding, all, (const quat *)(const void *)f->frames, turns));
-    if (form) {
-        guides_bind(f->binding, all, (const vec3 *)(const void *)f->centres, turns, numbers, rebuilt);
-    }
-    write_beside(folder, name, ".i16", numbers, (form ? 6 : 3) * nodes * sizeof *numbers);
-    free(numbers);
-    free(rebuilt);
+    write_beside(folder, name, ".i16", turns, 3 * nodes * sizeof *turns);
+    free(turns);
 }
 
+/* `name` says the form by its ending: .glb, .whole or .delta. */
 static void write_frame(guides_fixture *f, int form, const char *folder, const char *name)
 {
     const size_t floats = (size_t)f->info.strand_count * f->info.points_per_strand * 3;
     geom_strands received = {0};
     guides_fixture_encode(f, form, NULL);
-    CHECK_INT(geom_receive_frame(f->binding, f->frame.bytes, f->frame.size, &received, NULL), AWT_OK);
+    CHECK_INT(guides_fixture_receive(f, form, &received, NULL), AWT_OK);
     write_beside(folder, name, "", f->frame.bytes, f->frame.size);
     write_beside(folder, name, ".strands.f32", f->points, floats * sizeof(float));
     write_beside(folder, name, ".received.f32", received.positions, floats * sizeof(float));
-    if (form == 0) {
+    if (form == GUIDES_MESHES) {
         write_beside(folder, name, ".f32", f->centres, 3 * (size_t)f->info.finest_nodes * sizeof(float));
+        write_turns(f, folder, name);
     }
-    write_numbers(f, form, folder, name);
     geom_strands_fini(&received);
 }
 
+/* Frame n + 1 as a delta has frame n as its base. */
 static void write_clip(const char *folder, const char *name, const awt_groom *groom, const char *style)
 {
+    static const char *const endings[GUIDES_FORMS] = {"glb", "whole", "delta"};
     guides_fixture f;
     char file[80];
     guides_fixture_init(&f, groom, style);
     write_beside(folder, name, ".awtb", f.binding_bytes, f.binding_size);
     for (int n = 0; n < 4; n++) {
         guides_fixture_move(&f, "lean", INT64_C(1500000) + n * INT64_C(300000));
-        for (int form = 0; form < GUIDES_FORMS; form++) {
-            snprintf(file, sizeof file, "%s-%d%s.glb", name, n, form ? "-bound" : "");
+        for (int form = 0; form < (n > 0 ? GUIDES_FORMS : GUIDES_DELTA); form++) {
+            snprintf(file, sizeof file, "%s-%d.%s", name, n, endings[form]);
             write_frame(&f, form, folder, file);
         }
+        guides_fixture_keep(&f);
     }
     guides_fixture_fini(&f);
 }

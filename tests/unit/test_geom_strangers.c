@@ -3,6 +3,9 @@
 
 #include "base/hash.h"
 #include "base/rng.h"
+#include "geom/delta_checksum.h"
+#include "geom/guides.h"
+#include "geom/quantised.h"
 #include "geom/receive.h"
 #include "unit/groom_fixture.h"
 #include "unit/guides_fixture.h"
@@ -22,6 +25,16 @@ static awt_groom *small_groom(void)
     return groom;
 }
 
+static awt_status receive(guides_fixture *f, int form, const void *bytes, size_t size, geom_strands *strands)
+{
+    if (form == GUIDES_MESHES) {
+        return geom_receive_frame(f->binding, bytes, size, strands, NULL);
+    }
+    awt_status status =
+        geom_read_guides_delta(f->reader, f->binding, bytes, size, &f->base_got, f->base_sequence, &f->got, NULL);
+    return status == AWT_OK ? geom_guides_strands(f->binding, &f->got, strands, NULL) : status;
+}
+
 TEST(geom_guides_cut_short_or_damaged_do_no_harm)
 {
     awt_groom *groom = small_groom();
@@ -34,11 +47,11 @@ TEST(geom_guides_cut_short_or_damaged_do_no_harm)
         unsigned char *copy = malloc(f.frame.size);
         for (size_t size = 12; size < f.frame.size; size++) { /* with a header that agrees */
             uint32_t length = (uint32_t)size;
-            geom_strands strands;
+            geom_strands strands = {0};
             unsigned char *cut = malloc(size);
             memcpy(cut, f.frame.bytes, size);
             memcpy(cut + 8, &length, 4);
-            CHECK_INT(geom_receive_frame(f.binding, cut, size, &strands, NULL), AWT_BAD_FORMAT);
+            CHECK_INT(receive(&f, form, cut, size, &strands), AWT_BAD_FORMAT);
             free(cut);
         }
         for (int round = 0; round < 6000; round++) {
@@ -48,7 +61,7 @@ TEST(geom_guides_cut_short_or_damaged_do_no_harm)
             for (uint32_t flips = 1 + rng_u32(&random) % 4; flips > 0; flips--) {
                 copy[from + rng_u32(&random) % ((uint32_t)f.frame.size - from)] = (unsigned char)rng_u32(&random);
             }
-            bool taken = geom_receive_frame(f.binding, copy, f.frame.size, &strands, NULL) == AWT_OK;
+            bool taken = receive(&f, form, copy, f.frame.size, &strands) == AWT_OK;
             for (size_t i = 0; taken && i < (size_t)24 * 5 * 3; i++) {
                 CHECK(isfinite(strands.positions[i]));
             }
@@ -120,7 +133,7 @@ TEST(geom_bindings_that_lie_do_no_harm)
     const float wild[] = {NAN, INFINITY, 1e30f, -1e30f, 2e6f, 0, -1};
     unsigned char *bytes = malloc(f.binding_size);
     int read = 0;
-    guides_fixture_encode(&f, 1, NULL);
+    guides_fixture_encode(&f, GUIDES_MESHES, NULL);
     for (int round = 0; round < 6000; round++) {
         geom_binding *binding = NULL;
         memcpy(bytes, f.binding_bytes, f.binding_size);
@@ -154,6 +167,33 @@ TEST(geom_bindings_that_lie_do_no_harm)
     }
     CHECK(read > 0 && read < 6000);
     free(bytes);
+    guides_fixture_fini(&f);
+    awt_groom_destroy(groom);
+}
+
+/* Whole frames of numbers of a stranger's choice, with checksums that are right. */
+TEST(geom_guides_of_any_numbers_are_finite)
+{
+    awt_groom *groom = small_groom();
+    guides_fixture f;
+    guides_fixture_init(&f, groom, NULL);
+    rng random = rng_seed(45);
+    for (int round = 0; round < 300; round++) {
+        const geom_delta_def def = {.now = f.now, .sequence = 1, .head = awt_forest_head(f.forest)};
+        geom_strands strands = {0};
+        guides_fixture_encode(&f, GUIDES_WHOLE, NULL);
+        for (size_t i = 0; i < f.now->count; i++) {
+            f.now->numbers[i] = (uint16_t)(rng_u32(&random) >> (17 + (unsigned)round % 15));
+        }
+        f.now->checksum = delta_checksum(delta_checksum_numbers(f.now->numbers, f.now->count),
+                                         &(draco_box){.bits = GUIDES_BITS}, f.binding->id);
+        CHECK_INT(geom_encode_delta(f.layout, f.encoder, &def, &f.frame, NULL, NULL), AWT_OK);
+        CHECK_INT(guides_fixture_receive(&f, GUIDES_WHOLE, &strands, NULL), AWT_OK);
+        for (size_t i = 0; strands.positions && i < (size_t)24 * 5 * 3; i++) {
+            CHECK(isfinite(strands.positions[i]));
+        }
+        geom_strands_fini(&strands);
+    }
     guides_fixture_fini(&f);
     awt_groom_destroy(groom);
 }

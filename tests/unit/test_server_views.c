@@ -136,7 +136,7 @@ TEST(server_views_of_every_kind_show_the_same_step_without_another)
         shown[kind] = receive(binding, frame);
         CHECK_INT(shown[kind].kind, kind);
         CHECK(distance(&shown[0], &shown[kind]) < 0.0005);
-        CHECK(holds(&frame->glb, "_OFFSET") == (kind == GEOM_GUIDES)); /* against the binding */
+        CHECK(holds(&frame->glb, "_TURN") == (kind == GEOM_GUIDES)); /* turns beside the centres */
     }
     const struct proto_frame *nodes = look(&s, GEOM_NODES);
     geom_nodes got = {0};
