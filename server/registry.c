@@ -84,7 +84,9 @@ static void submit(registry *reg, resident *r)
     r->work.job.run = forest_work_run;
     r->work.handle = r->handle;
     r->work.sequence = r->sequence;
-    r->work.spare = take_spare(r);
+    if (!r->work.spare) { /* a job that failed has left its own */
+        r->work.spare = take_spare(r);
+    }
     worker_pool_submit(reg->pool, &r->work.job);
 }
 
