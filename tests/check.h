@@ -37,5 +37,7 @@ const char *check_build_directory(void);
 
 /* A whole file in heap memory, or NULL. */
 unsigned char *check_read_file(const char *path, size_t *size);
+/* Writes the file FOLDER/NAMEENDING, which other programs' checks read; that it is whole is checked. */
+void check_write_file(const char *folder, const char *name, const char *ending, const void *bytes, size_t size);
 
 #endif

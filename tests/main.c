@@ -119,6 +119,15 @@ unsigned char *check_read_file(const char *path, size_t *size)
     return bytes;
 }
 
+void check_write_file(const char *folder, const char *name, const char *ending, const void *bytes, size_t size)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
+    FILE *file = fopen(path, "wb");
+    CHECK(file && fwrite(bytes, 1, size, file) == size);
+    CHECK(file && fclose(file) == 0);
+}
+
 const char *check_build_directory(void)
 {
     return build_directory;

@@ -112,13 +112,12 @@ awt_status geom_read_delta(geom_delta_reader *reader, const void *bytes, size_t 
                            uint64_t base_sequence, geom_strands *out, awt_error *error)
 {
     delta_glb glb;
-    delta_header header = {0};
-    awt_status status = delta_glb_read(bytes, size, &glb, error);
+    delta_header header;
+    codec block;
+    awt_status status = delta_reader_open(bytes, size, &glb, &header, &block, error);
     if (status != AWT_OK) {
         return status;
     }
-    codec block = codec_reading(glb.block, glb.size);
-    delta_header_walk(&block, &header);
     status = check_header(&header, base, base_sequence, error);
     if (status != AWT_OK) {
         return status;

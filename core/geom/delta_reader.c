@@ -39,6 +39,18 @@ void geom_delta_reader_destroy(geom_delta_reader *reader)
     }
 }
 
+awt_status delta_reader_open(const void *bytes, size_t size, delta_glb *glb, delta_header *header, codec *block,
+                             awt_error *error)
+{
+    *header = (delta_header){0};
+    awt_status status = delta_glb_read(bytes, size, glb, error);
+    if (status == AWT_OK) {
+        *block = codec_reading(glb->block, glb->size);
+        delta_header_walk(block, header);
+    }
+    return status;
+}
+
 awt_status delta_reader_room(geom_delta_reader *reader, const delta_shape *shape, awt_error *error)
 {
     const size_t room = delta_room(shape), changes = delta_before(shape) + room;

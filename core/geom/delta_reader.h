@@ -6,6 +6,7 @@
 #include "geom/cloud.h"
 #include "geom/delta.h"
 #include "geom/delta_format.h"
+#include "geom/delta_glb.h"
 #include "geom/read.h"
 
 struct geom_delta_reader {
@@ -14,6 +15,11 @@ struct geom_delta_reader {
     int16_t *changes;
     size_t room, changes_room;
 };
+
+/* Finds a delta's block in its file: *header is read, whatever it says, and *block goes on behind it. Errors of
+ * delta_glb_read. */
+awt_status delta_reader_open(const void *bytes, size_t size, delta_glb *glb, delta_header *header, codec *block,
+                             awt_error *error);
 
 /* What `strands` strands of a delta are; its box; and the checksum of numbers that it could be of. */
 delta_shape delta_reader_shape(const delta_header *header, uint32_t strands);

@@ -96,13 +96,12 @@ awt_status geom_read_guides_delta(geom_delta_reader *reader, const geom_binding 
                                   awt_error *error)
 {
     delta_glb glb;
-    delta_header header = {0};
-    awt_status status = delta_glb_read(bytes, size, &glb, error);
+    delta_header header;
+    codec block;
+    awt_status status = delta_reader_open(bytes, size, &glb, &header, &block, error);
     if (status != AWT_OK) {
         return status;
     }
-    codec block = codec_reading(glb.block, glb.size);
-    delta_header_walk(&block, &header);
     status = check_header(binding, &header, error);
     if (status == AWT_OK) {
         const delta_shape shape = delta_reader_shape(&header, header.strands);

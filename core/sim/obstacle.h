@@ -16,8 +16,8 @@ void obstacle_place(awt_forest *f, const track_pose *before, float dt_s);
 
 /* Root to tip: every link gets exactly its length, and every child node that is inside an obstacle turns about its
  * parent onto the surface and takes the obstacle's velocity, and of its own along the surface the share
- * params.obstacle_slip. Where the surface cannot be reached so, the link wins and
- * the node is counted. Returns how many. */
+ * params.obstacle_slip. Where the surface cannot be reached so, the link wins and the node is counted. Returns how
+ * many. */
 uint32_t obstacle_settle(awt_forest *f, const tree *t, float dt_s);
 
 #endif

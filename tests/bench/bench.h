@@ -3,6 +3,7 @@
 #define BENCH_H
 
 #include "awt.h"
+#include "base/options.h"
 #include "motion/motion.h"
 
 #include <time.h>
@@ -13,6 +14,11 @@ enum { BENCH_MAX_WORKERS = 64 };
 int bench_paper(int argc, char *const *argv);
 int bench_encode(int argc, char *const *argv);
 int bench_soak(int argc, char *const *argv);
+
+/* Takes the command line, as options_parse does. False: there is nothing to run; what there is to say has been said,
+ * and *code is the exit code. */
+bool bench_options(const option_program *program, int argc, char *const *argv, const char **operands,
+                   size_t operand_max, size_t *operand_count, int *code);
 
 /* How the values of a list lie. */
 typedef struct bench_spread {

@@ -213,23 +213,9 @@ static bool plan_read(int argc, char *const *argv, encode_plan *plan, int *code)
     const option_program program = {"awt-bench encode",
                                     "What frames of moving hair cost to encode and decode, beside stock libdraco.",
                                     NULL, options, sizeof options / sizeof options[0]};
-    char error[160];
     size_t operands;
-    switch (options_parse(&program, argc, argv, NULL, 0, &operands, error, sizeof error)) {
-    case OPTIONS_HELP:
-        options_help(&program, stdout);
-        *code = 0;
+    if (!bench_options(&program, argc, argv, NULL, 0, &operands, code)) {
         return false;
-    case OPTIONS_VERSION:
-        puts("awt-bench " AWTD_VERSION);
-        *code = 0;
-        return false;
-    case OPTIONS_WRONG:
-        fprintf(stderr, "awt-bench encode: %s\n", error);
-        *code = 2;
-        return false;
-    case OPTIONS_RUN:
-        break;
     }
     plan->strands = (uint32_t)strands;
     plan->points = (uint32_t)points;

@@ -160,24 +160,8 @@ static bool plan_options(int argc, char *const *argv, paper_words *words, paper_
         "awt-bench paper",
         "The table of the paper's §5.2: ms a 10 ms step, all finest wisps (single level) against the AWT.", NULL,
         options, sizeof options / sizeof options[0]};
-    char error[160];
     size_t operands;
-    switch (options_parse(&program, argc, argv, NULL, 0, &operands, error, sizeof error)) {
-    case OPTIONS_HELP:
-        options_help(&program, stdout);
-        *code = 0;
-        return false;
-    case OPTIONS_VERSION:
-        puts("awt-bench " AWTD_VERSION);
-        *code = 0;
-        return false;
-    case OPTIONS_WRONG:
-        *code = 2;
-        return plan_wrong("%s", error);
-    case OPTIONS_RUN:
-        break;
-    }
-    return true;
+    return bench_options(&program, argc, argv, NULL, 0, &operands, code);
 }
 
 bool paper_plan_read(int argc, char *const *argv, paper_plan *plan, int *code)

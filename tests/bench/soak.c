@@ -283,23 +283,14 @@ int bench_soak(int argc, char *const *argv)
         "awt-bench soak",
         "Plays the most violent of some motions for minutes and checks what must hold; the exit code says whether.",
         "CLIP...", options, sizeof options / sizeof options[0]};
-    char error[160];
     size_t clip_count;
-    const option_result result =
-        options_parse(&program, argc, argv, clips, SOAK_MAX_CLIPS, &clip_count, error, sizeof error);
-    if (result == OPTIONS_HELP) {
-        options_help(&program, stdout);
-        return 0;
+    int code;
+    if (!bench_options(&program, argc, argv, clips, SOAK_MAX_CLIPS, &clip_count, &code)) {
+        return code;
     }
-    if (result == OPTIONS_VERSION) {
-        puts("awt-bench " AWTD_VERSION);
-        return 0;
-    }
-    if (result == OPTIONS_WRONG || clip_count == 0 || (style && !awt_style_find(style))) {
+    if (clip_count == 0 || (style && !awt_style_find(style))) {
         fprintf(stderr, "awt-bench soak: %s\n",
-                result == OPTIONS_WRONG ? error
-                : clip_count == 0       ? "name a motion (lean, shake, FILE.bvh ...)"
-                                        : "there is no style of that name");
+                clip_count == 0 ? "name a motion (lean, shake, FILE.bvh ...)" : "there is no style of that name");
         return 2;
     }
     plan = (soak_plan){.style = style, .length_us = (int64_t)(seconds * 1e6), .strands = (uint32_t)strands};

@@ -21,14 +21,7 @@ trap 'status=$?; [ -z "$daemon" ] || kill $daemon 2>/dev/null || true; rm -rf "$
 trap 'exit 130' INT
 trap 'exit 143' TERM HUP
 
-"$build/awtd" --listen 127.0.0.1:0 --state-dir "$work/state" >"$work/out" 2>"$work/log" &
-daemon=$!
-address=
-for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
-    address=$(sed -n 's/^listening on //p' "$work/out")
-    [ -n "$address" ] && break
-    sleep 0.5
-done
+. tests/start_awtd.sh
 [ -n "$address" ] || { cat "$work/log" >&2; exit 1; }
 
 # sheet PICTURE PLAY-OPTIONS...: times are frames of 60 a second.

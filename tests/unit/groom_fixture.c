@@ -63,6 +63,34 @@ awt_groom *groom_fixture_build_patch(uint32_t strand_count, uint32_t levels, uin
     return groom;
 }
 
+const groom_fixture_file groom_fixture_real[GROOM_FIXTURE_REAL] = {
+    {"hair/sintel_16pt.v4.tfx", {.scale = 0}},
+    {"hair/ratboy_mohawk.v4.tfx", {.scale = 0}},
+    {"hair/yuksel_straight.hair", {.scale = 0}},
+    {"hair/ponytail_tail.v3.tfx", {.scale = 0.01, .up = AWT_UP_Y, .head_radius = 10}},
+    {"hair/ponytail_front_top.v3.tfx", {.scale = 0.01, .up = AWT_UP_Y, .head_radius = 10}},
+};
+
+awt_groom *groom_fixture_build_real(const groom_fixture_file *real, const char *path)
+{
+    size_t size = 0;
+    unsigned char *bytes = check_read_file(path, &size);
+    awt_strands strands = {0};
+    awt_placement placement = real->placement;
+    awt_groom_def def = awt_groom_def_default();
+    awt_groom *groom = NULL;
+    bool read = bytes && awt_strands_read(bytes, size, &strands, NULL) == AWT_OK &&
+                awt_strands_place(&strands, &placement, NULL) == AWT_OK;
+    CHECK(read);
+    if (read) {
+        def.head_radius_m = placement.head_radius_m;
+        groom = groom_fixture_build(&strands, &def);
+    }
+    awt_strands_fini(&strands);
+    free(bytes);
+    return groom;
+}
+
 uint64_t groom_fixture_hash(const awt_groom *groom)
 {
     const size_t points = (size_t)groom->info.strand_count * groom->info.points_per_strand;

@@ -18,6 +18,16 @@ awt_groom *groom_fixture_build(const awt_strands *strands, const awt_groom_def *
 /* On groom_fixture_patch. */
 awt_groom *groom_fixture_build_patch(uint32_t strand_count, uint32_t levels, uint32_t top, uint32_t finest);
 
+/* The real grooms of the data folder, and what of their placement the roots do not show. */
+enum { GROOM_FIXTURE_REAL = 5 };
+typedef struct groom_fixture_file {
+    const char *file;
+    awt_placement placement;
+} groom_fixture_file;
+extern const groom_fixture_file groom_fixture_real[GROOM_FIXTURE_REAL];
+/* The groom of the strands of one, which stands at `path`. A failure is a failed check, and NULL. */
+awt_groom *groom_fixture_build_real(const groom_fixture_file *real, const char *path);
+
 /* Of everything a groom consists of. */
 uint64_t groom_fixture_hash(const awt_groom *groom);
 /* The strands as the groom evaluates them at rest, [strands][points][3]; the caller frees. */

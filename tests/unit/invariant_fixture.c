@@ -33,6 +33,18 @@ awt_forest *small_forest(const awt_groom *groom, const awt_params *params)
     return f;
 }
 
+awt_forest *small_restored(const awt_forest *f, awt_groom **groom)
+{
+    awt_forest *restored = NULL;
+    size_t size = 0;
+    ASSERT(awt_forest_snapshot(f, NULL, 0, &size, NULL) == AWT_OK);
+    void *bytes = malloc(size);
+    ASSERT(bytes && awt_forest_snapshot(f, bytes, size, &size, NULL) == AWT_OK);
+    ASSERT(awt_snapshot_restore(bytes, size, groom, &restored, NULL) == AWT_OK);
+    free(bytes);
+    return restored;
+}
+
 awt_params small_params(const char *style)
 {
     awt_params params = awt_style_find(style)->params;

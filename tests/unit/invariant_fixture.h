@@ -12,6 +12,9 @@ awt_groom *small_groom(const char *style, uint64_t seed);
 /* At rest at time 0 with identity poses, with the default head and body. The caller destroys. */
 awt_forest *small_forest(const awt_groom *groom, const awt_params *params);
 
+/* The forest again, and its groom, from a snapshot of it. The caller destroys both, the forest first. */
+awt_forest *small_restored(const awt_forest *f, awt_groom **groom);
+
 /* The style's parameters, with the ones that tests depend on set here: no contact, threshold 0.3. */
 awt_params small_params(const char *style);
 

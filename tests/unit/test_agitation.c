@@ -146,13 +146,9 @@ TEST(agitation_is_part_of_a_snapshot)
     awt_params params = windy_params(0.8f);
     params.contact = 1;
     params.split_wind = 10, params.split_contact = 1;
-    awt_forest *f = small_forest(groom, &params), *restored;
+    awt_forest *f = small_forest(groom, &params);
     ASSERT(awt_forest_advance(f, 1000000, NULL, NULL) == AWT_OK);
-    size_t size = 0;
-    ASSERT(awt_forest_snapshot(f, NULL, 0, &size, NULL) == AWT_OK);
-    void *bytes = malloc(size);
-    ASSERT(bytes && awt_forest_snapshot(f, bytes, size, &size, NULL) == AWT_OK);
-    CHECK_INT(awt_snapshot_restore(bytes, size, &again, &restored, NULL), AWT_OK);
+    awt_forest *restored = small_restored(f, &again);
     awt_step_stats stats = {0};
     uint32_t splits = 0;
     for (int n = 101; n <= 300; n++) {
@@ -162,7 +158,6 @@ TEST(agitation_is_part_of_a_snapshot)
         splits += stats.splits;
     }
     CHECK(splits > 10);
-    free(bytes);
     awt_forest_destroy(restored);
     awt_groom_destroy(again);
     awt_forest_destroy(f);

@@ -107,32 +107,26 @@ TEST(no_tree_starves_on_a_small_budget)
 
 TEST(whose_turn_it_is_to_split_is_part_of_a_snapshot)
 {
-    awt_groom *groom = small_groom("long", 3);
+    awt_groom *groom = small_groom("long", 3), *again;
     awt_params params = small_params("long");
     params.split_threshold = 0.05f;
     params.split_budget = 2;
-    awt_forest *f = small_forest(groom, &params), *restored;
+    awt_forest *f = small_forest(groom, &params);
     wild w = wild_make(7, 1.0);
     int n = 0;
     while (f->split_from == 0) {
         ASSERT(++n < 100);
         wild_advance(f, &w, (int64_t)n * AWT_STEP_US, NULL);
     }
-    size_t size = 0;
-    ASSERT(awt_forest_snapshot(f, NULL, 0, &size, NULL) == AWT_OK);
-    void *bytes = malloc(size);
-    awt_groom *groom_restored;
-    ASSERT(bytes && awt_forest_snapshot(f, bytes, size, &size, NULL) == AWT_OK);
-    CHECK_INT(awt_snapshot_restore(bytes, size, &groom_restored, &restored, NULL), AWT_OK);
+    awt_forest *restored = small_restored(f, &again);
     CHECK_INT(restored->split_from, f->split_from);
     for (int last = n + 50; n < last; n++) {
         wild_advance(f, &w, (int64_t)(n + 1) * AWT_STEP_US, NULL);
         wild_advance(restored, &w, (int64_t)(n + 1) * AWT_STEP_US, NULL);
         CHECK_U64(awt_forest_hash(restored), awt_forest_hash(f));
     }
-    free(bytes);
     awt_forest_destroy(restored);
-    awt_groom_destroy(groom_restored);
+    awt_groom_destroy(again);
     awt_forest_destroy(f);
     awt_groom_destroy(groom);
 }

@@ -113,15 +113,6 @@ TEST(geom_attributes_are_refused_where_there_are_none)
     geom_fixture_fini(&f);
 }
 
-static void write_beside(const char *folder, const char *name, const char *ending, const void *bytes, size_t size)
-{
-    char path[1024];
-    snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
-    FILE *file = fopen(path, "wb");
-    CHECK(file && fwrite(bytes, 1, size, file) == size);
-    CHECK(file && fclose(file) == 0);
-}
-
 /* Beside the frame, for every vertex: strand within the patch, u, v, width, before quantisation. */
 static void write_values(const rest_hair *h, const char *folder, const char *name)
 {
@@ -139,7 +130,7 @@ static void write_values(const rest_hair *h, const char *folder, const char *nam
             }
         }
     }
-    write_beside(folder, name, ".extra.f32", values, 4 * vertices * sizeof *values);
+    check_write_file(folder, name, ".extra.f32", values, 4 * vertices * sizeof *values);
     free(values);
 }
 
@@ -159,7 +150,7 @@ TEST(geom_attributes_for_other_readers)
                                               .attributes = GEOM_ATTRIBUTES_ALL,
                                               .colour = {0.4f, 0.3f, 0.1f}});
         snprintf(name, sizeof name, "attributes-%d.glb", n);
-        write_beside(folder, name, "", h.frame.bytes, h.frame.size);
+        check_write_file(folder, name, "", h.frame.bytes, h.frame.size);
         write_values(&h, folder, name);
         rest_hair_fini(&h);
     }

@@ -251,15 +251,6 @@ TEST(geom_guides_keep_patches_that_rest)
 
 /* ---- for the checks of tests/node */
 
-static void write_beside(const char *folder, const char *name, const char *ending, const void *bytes, size_t size)
-{
-    char path[400];
-    snprintf(path, sizeof path, "%s/%s%s", folder, name, ending);
-    FILE *file = fopen(path, "wb");
-    CHECK(file && fwrite(bytes, 1, size, file) == size);
-    CHECK(file && fclose(file) == 0);
-}
-
 /* The turns of `frame`, of its one patch. */
 static void write_turns(const guides_fixture *f, const char *folder, const char *name)
 {
@@ -268,7 +259,7 @@ static void write_turns(const guides_fixture *f, const char *folder, const char 
     int16_t *turns = calloc(3 * nodes, sizeof *turns);
     CHECK_INT(geom_layout_patches(f->layout), 1);
     CHECK(guides_turns(f->binding, all, (const quat *)(const void *)f->frames, turns));
-    write_beside(folder, name, ".i16", turns, 3 * nodes * sizeof *turns);
+    check_write_file(folder, name, ".i16", turns, 3 * nodes * sizeof *turns);
     free(turns);
 }
 
@@ -279,11 +270,11 @@ static void write_frame(guides_fixture *f, int form, const char *folder, const c
     geom_strands received = {0};
     guides_fixture_encode(f, form, NULL);
     CHECK_INT(guides_fixture_receive(f, form, &received, NULL), AWT_OK);
-    write_beside(folder, name, "", f->frame.bytes, f->frame.size);
-    write_beside(folder, name, ".strands.f32", f->points, floats * sizeof(float));
-    write_beside(folder, name, ".received.f32", received.positions, floats * sizeof(float));
+    check_write_file(folder, name, "", f->frame.bytes, f->frame.size);
+    check_write_file(folder, name, ".strands.f32", f->points, floats * sizeof(float));
+    check_write_file(folder, name, ".received.f32", received.positions, floats * sizeof(float));
     if (form == GUIDES_MESHES) {
-        write_beside(folder, name, ".f32", f->centres, 3 * (size_t)f->info.finest_nodes * sizeof(float));
+        check_write_file(folder, name, ".f32", f->centres, 3 * (size_t)f->info.finest_nodes * sizeof(float));
         write_turns(f, folder, name);
     }
     geom_strands_fini(&received);
@@ -296,7 +287,7 @@ static void write_clip(const char *folder, const char *name, const awt_groom *gr
     guides_fixture f;
     char file[80];
     guides_fixture_init(&f, groom, style);
-    write_beside(folder, name, ".awtb", f.binding_bytes, f.binding_size);
+    check_write_file(folder, name, ".awtb", f.binding_bytes, f.binding_size);
     for (int n = 0; n < 4; n++) {
         guides_fixture_move(&f, "lean", INT64_C(1500000) + n * INT64_C(300000));
         for (int form = 0; form < (n > 0 ? GUIDES_FORMS : GUIDES_DELTA); form++) {

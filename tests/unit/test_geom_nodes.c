@@ -148,12 +148,10 @@ TEST(geom_nodes_for_other_readers)
     }
     for (size_t s = 0; s < 4; s++) {
         nodes_fixture f;
-        char path[400];
+        char name[32];
         init(&f, styles[s], 2000000);
-        snprintf(path, sizeof path, "%s/nodes-%s.glb", folder, styles[s]);
-        FILE *file = fopen(path, "wb");
-        CHECK(file && fwrite(f.frame.bytes, 1, f.frame.size, file) == f.frame.size);
-        CHECK(file && fclose(file) == 0);
+        snprintf(name, sizeof name, "nodes-%s", styles[s]);
+        check_write_file(folder, name, ".glb", f.frame.bytes, f.frame.size);
         fini(&f);
     }
 }

@@ -9,15 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool write_file(const char *folder, const char *name, const void *bytes, size_t size)
-{
-    char path[1024];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "wb");
-    bool written = file && fwrite(bytes, 1, size, file) == size;
-    return file && fclose(file) == 0 && written;
-}
-
 /* Vertices as they went in: a ribbon's, or the strands' points. */
 static void write_vertices(const geom_fixture *f, const float *points, const char *folder, const char *name)
 {
@@ -32,15 +23,14 @@ static void write_vertices(const geom_fixture *f, const float *points, const cha
     } else {
         memcpy(vertices, points, size);
     }
-    CHECK(write_file(folder, name, vertices, size));
+    check_write_file(folder, name, ".f32", vertices, size);
     free(vertices);
 }
 
-static void write_frame(geom_fixture *f, const geom_frame_def *def, const char *folder, char name[80])
+static void write_frame(geom_fixture *f, const geom_frame_def *def, const char *folder, const char *name)
 {
     CHECK_INT(geom_encode(f->layout, f->scratch, def, &f->frame, NULL, NULL), AWT_OK);
-    CHECK(write_file(folder, name, f->frame.bytes, f->frame.size));
-    strcat(name, ".f32");
+    check_write_file(folder, name, "", f->frame.bytes, f->frame.size);
     write_vertices(f, def->points, folder, name);
 }
 

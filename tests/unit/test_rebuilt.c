@@ -112,36 +112,16 @@ TEST(rebuilt_strands_without_length_are_where_they_were)
 
 TEST(rebuilt_strands_of_real_grooms_are_where_they_were)
 {
-    static const struct {
-        const char *file;
-        awt_placement placement; /* where the roots do not show it */
-    } grooms[] = {
-        {"hair/sintel_16pt.v4.tfx", {.scale = 0}},
-        {"hair/ratboy_mohawk.v4.tfx", {.scale = 0}},
-        {"hair/yuksel_straight.hair", {.scale = 0}},
-        {"hair/ponytail_tail.v3.tfx", {.scale = 0.01, .up = AWT_UP_Y, .head_radius = 10}},
-        {"hair/ponytail_front_top.v3.tfx", {.scale = 0.01, .up = AWT_UP_Y, .head_radius = 10}},
-    };
-    for (size_t i = 0; i < sizeof grooms / sizeof grooms[0]; i++) {
-        const char *path = check_data(grooms[i].file);
+    for (size_t i = 0; i < GROOM_FIXTURE_REAL; i++) {
+        const char *path = check_data(groom_fixture_real[i].file);
         if (!path) {
             check_skip("the real strand files are not on this machine");
             return;
         }
-        size_t size = 0;
-        unsigned char *bytes = check_read_file(path, &size);
-        awt_strands strands = {0};
-        awt_placement placement = grooms[i].placement;
-        CHECK(bytes && awt_strands_read(bytes, size, &strands, NULL) == AWT_OK);
-        CHECK(awt_strands_place(&strands, &placement, NULL) == AWT_OK);
-        awt_groom_def def = awt_groom_def_default();
-        def.head_radius_m = placement.head_radius_m;
-        awt_groom *groom = groom_fixture_build(&strands, &def);
+        awt_groom *groom = groom_fixture_build_real(&groom_fixture_real[i], path);
         if (groom) {
             CHECK_NEAR(awt_groom_rebuilt(groom).max_m, 0.0, AIM_M);
         }
         awt_groom_destroy(groom);
-        awt_strands_fini(&strands);
-        free(bytes);
     }
 }

@@ -218,19 +218,14 @@ TEST(a_snapshot_in_a_gust_goes_on_to_the_bit)
 {
     awt_groom *groom = small_groom("long", 3), *again;
     const awt_params params = gusty_params("long");
-    awt_forest *f = small_forest(groom, &params), *restored;
+    awt_forest *f = small_forest(groom, &params);
     ASSERT(awt_forest_advance(f, 1234567, NULL, NULL) == AWT_OK);
-    size_t size = 0;
-    ASSERT(awt_forest_snapshot(f, NULL, 0, &size, NULL) == AWT_OK);
-    void *bytes = malloc(size);
-    ASSERT(bytes && awt_forest_snapshot(f, bytes, size, &size, NULL) == AWT_OK);
-    CHECK_INT(awt_snapshot_restore(bytes, size, &again, &restored, NULL), AWT_OK);
+    awt_forest *restored = small_restored(f, &again);
     const uint64_t then = awt_forest_hash(f);
     ASSERT(awt_forest_advance(f, 3000000, NULL, NULL) == AWT_OK);
     ASSERT(awt_forest_advance(restored, 3000000, NULL, NULL) == AWT_OK);
     CHECK(awt_forest_hash(f) != then);
     CHECK_U64(awt_forest_hash(restored), awt_forest_hash(f));
-    free(bytes);
     awt_forest_destroy(restored);
     awt_groom_destroy(again);
     awt_forest_destroy(f);
