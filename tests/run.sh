@@ -1,6 +1,6 @@
 #!/bin/sh
-# run.sh: every test: unit tests and daemon with client end to end, with gcc and then with clang under ASan and UBSan, and what
-# the command line client writes before other people's glTF tools. Its last line counts all.
+# run.sh: every test: unit tests and daemon with client end to end, with gcc and then with clang under ASan and UBSan; what
+# the command line client writes before other people's glTF tools; and a client in another language. Its last line counts all.
 set -u
 cd "$(dirname "$0")/.."
 . tests/suites.sh
@@ -8,6 +8,7 @@ cd "$(dirname "$0")/.."
 build config=release
 suite "every test, gcc -O2" build/release/tests
 suite "awtctl's files before other glTF tools" sh tests/node/suite.sh build/release
+suite "a client written from PROTOCOL.md alone" python3 -B tests/stranger/test_stranger.py build/release
 build config=asan CC=clang CXX=clang++
 suite "every test, clang, ASan and UBSan" build/asan/tests
 finish
