@@ -5,7 +5,7 @@
 #include "service.h"
 
 /* Takes every finished job: answers CREATE, QUERY and BINDING, offers pictures to subscribers, reports refused motions,
- * frees doomed forests, has the next jobs run. On the I/O thread. True if there were any. */
+ * frees doomed forests, has the next jobs run. Under the service's lock. True if there were any. */
 bool completions_take(service *shared);
 
 #endif

@@ -1,6 +1,7 @@
 /* daemon.c: see daemon.h. */
 #include "daemon.h"
 #include "clock.h"
+#include "completions.h"
 #include "loop.h"
 #include "net.h"
 #include "token.h"
@@ -29,25 +30,42 @@ static void announce(const config *asked, const char *bound)
               asked->no_auth ? "none" : asked->token_file);
 }
 
-static bool serve(const config *asked, const service_options *options, wake *bell, int listener, const char *bound,
+typedef struct serving {
+    service shared;
+    wake *bell;
+} serving;
+
+/* What a worker does with the job that it has just done: brings the results to those who asked. */
+static void on_job_done(void *context)
+{
+    serving *s = context;
+    service_lock(&s->shared);
+    completions_take(&s->shared);
+    service_unlock(&s->shared);
+    wake_ring(s->bell);
+}
+
+static bool serve(const config *asked, service_options *options, wake *bell, int listener, const char *bound,
                   char *error, size_t error_size)
 {
-    service shared = {0};
+    serving all = {.bell = bell};
     loop turns;
-    if (!service_init(&shared, options)) {
+    options->wake = on_job_done;
+    options->wake_context = &all;
+    if (!service_init(&all.shared, options)) {
         snprintf(error, error_size, "not enough memory or threads for %u workers; give --workers N", asked->workers);
         close(listener);
         return false;
     }
-    if (!loop_init(&turns, &shared, bell, listener, asked->max_connections)) {
+    if (!loop_init(&turns, &all.shared, bell, listener, asked->max_connections)) {
         snprintf(error, error_size, "not enough memory for %lu connections", (unsigned long)asked->max_connections);
-        service_fini(&shared);
+        service_fini(&all.shared);
         return false;
     }
     announce(asked, bound);
     loop_run(&turns);
     loop_fini(&turns);
-    service_fini(&shared); /* may wait for a groom that is being built */
+    service_fini(&all.shared); /* may wait for a groom that is being built */
     log_write(LOG_INFO, "stopped", "listen=%s", bound);
     return true;
 }
@@ -58,9 +76,7 @@ bool daemon_run(const config *asked, char *error, size_t error_size)
     service_options options = {.workers = asked->workers,
                                .max_forests = asked->max_forests,
                                .max_sessions = asked->max_connections + LIMIT_CONNECTIONS_REFUSED,
-                               .clock_us = clock_monotonic_us,
-                               .wake = wake_ring,
-                               .wake_context = &bell};
+                               .clock_us = clock_monotonic_us};
     char bound[NET_ADDRESS];
     bool served = false;
     log_set_level(asked->level);

@@ -1,8 +1,8 @@
 /* forest_work.h: what a worker does with a forest: make it (CREATE), bring it to a time (QUERY) or look at it as it
  * stands, and draw what is wanted of it.
  *
- * A forest_work is wholly the worker's from worker_pool_submit until the I/O thread takes the job back, and wholly the
- * I/O thread's otherwise; `note` alone is both's. What comes out depends only on the recipe and on the inputs in their
+ * A forest_work is wholly the worker's from worker_pool_submit until the job is taken back (registry_take_back), and
+ * the service's otherwise; `note` alone is both's. What comes out depends only on the recipe and on the inputs in their
  * order, never on which worker runs it or when. */
 #ifndef FOREST_WORK_H
 #define FOREST_WORK_H
@@ -56,7 +56,7 @@ typedef struct forest_work {
     job job;
     atomic_uint note; /* while it is made: how far it has come, see forest_work_stage; written by the worker */
 
-    /* the task; the I/O thread fills it in before submitting */
+    /* the task; filled in before submitting */
     recipe *making;       /* CREATE; NULL: the forest is made */
     forest_input *inputs; /* motions and parameters, and at the end the query that wants them; owned. NULL: no step */
     forest_input *looks;  /* who wants to see what there is then; owned */
@@ -67,7 +67,7 @@ typedef struct forest_work {
     int64_t submitted_us; /* monotonic clock: when the request came */
     picture *spare;       /* a reference: to be drawn into; NULL: a new one is made */
 
-    /* the result; the I/O thread takes it */
+    /* the result; completions.c takes it */
     bool stepped;         /* the forest was made or advanced */
     picture *drawn;       /* a reference; NULL: nothing was to be drawn, or `error` says why */
     picture *binding;     /* a reference, with the one view PICTURE_BINDING */

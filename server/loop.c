@@ -1,6 +1,5 @@
 /* loop.c: see loop.h. */
 #include "loop.h"
-#include "completions.h"
 #include "log.h"
 #include "making.h"
 #include "net.h"
@@ -39,8 +38,12 @@ static void stop_listening(loop *l)
 
 void loop_fini(loop *l)
 {
-    while (l->count > 0) {
-        connection_destroy(l->connections[--l->count]);
+    if (l->count > 0) {
+        service_lock(l->shared);
+        while (l->count > 0) {
+            connection_destroy(l->connections[--l->count]);
+        }
+        service_unlock(l->shared);
     }
     stop_listening(l);
     free(l->connections);
@@ -136,22 +139,25 @@ static void give_turns(loop *l, uint32_t count, bool all, int64_t now_us)
     }
 }
 
+/* Under the lock, which it lets go while it sleeps. */
 static void turn(loop *l, int64_t until_us)
 {
     int64_t before_us = l->shared->options.clock_us();
     uint32_t count = l->count;
     int64_t due_us = making_due_us(l->shared);
     fill_slots(l, before_us);
-    int ready =
-        poll(l->polled, SLOT_CONNECTIONS + count, sleep_ms(l, before_us, due_us < until_us ? due_us : until_us));
+    int patience_ms = sleep_ms(l, before_us, due_us < until_us ? due_us : until_us);
+    service_unlock(l->shared);
+    int ready = poll(l->polled, SLOT_CONNECTIONS + count, patience_ms);
+    service_lock(l->shared);
     if (ready < 0) { /* EINTR, or no memory for a moment: nobody has anything to say */
         for (uint32_t i = 0; i < SLOT_CONNECTIONS + count; i++) {
             l->polled[i].revents = 0;
         }
     }
     int64_t now_us = l->shared->options.clock_us();
+    bool results = l->polled[SLOT_WAKE].revents != 0;
     wake_clear(l->bell);
-    bool results = completions_take(l->shared);
     making_tell(l->shared, now_us);
     give_turns(l, count, results, now_us);
     if (l->polled[SLOT_LISTENER].revents & POLLIN) {
@@ -162,6 +168,7 @@ static void turn(loop *l, int64_t until_us)
 
 void loop_run(loop *l)
 {
+    service_lock(l->shared);
     while (!wake_stop_asked()) {
         turn(l, INT64_MAX);
     }
@@ -174,4 +181,5 @@ void loop_run(loop *l)
     while (l->count > 0 && l->shared->options.clock_us() < until_us) {
         turn(l, until_us);
     }
+    service_unlock(l->shared);
 }

@@ -1,7 +1,8 @@
-/* loop.h: the I/O thread: sleeps in poll, gives every connection its turn, takes what workers have done.
+/* loop.h: the I/O thread: sleeps in poll, and gives every connection its turn.
  *
  * Slot 0 of the poll set is the wake pipe, slot 1 the listener, the rest the connections. Connections come and go only
- * after every slot has been looked at. */
+ * after every slot has been looked at. The loop holds the service's lock except while it sleeps; whoever has given a
+ * connection something to send rings the pipe. */
 #ifndef LOOP_H
 #define LOOP_H
 

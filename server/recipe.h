@@ -30,7 +30,7 @@ typedef struct recipe {
  * none. The caller owns *out: recipe_destroy. AWT_NO_STYLE, AWT_NO_PARAM, AWT_BAD_VALUE, AWT_LIMIT, AWT_NO_MEMORY. */
 awt_status recipe_create(const struct proto_create *message, upload *file, upload *hierarchy, recipe **out,
                          awt_error *error);
-/* On the I/O thread. Accepts NULL. */
+/* Under the service's lock. Accepts NULL. */
 void recipe_destroy(recipe *made);
 
 #endif

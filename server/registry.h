@@ -1,10 +1,11 @@
 /* registry.h: the forests that live in the daemon, and the order in which they are worked on.
  *
- * A resident belongs to the I/O thread, except its `work`, which belongs to a worker while `busy`. Messages that act on
- * it wait in `waiting`, in order, whoever sent them; when it is idle, everything up to and including the first QUERY
- * becomes one job. So a QUERY sees exactly the motions and parameters that came before it, and the result does not
- * depend on how many workers there are. Whoever only wants to see the forest as it stands is answered by the next job,
- * whether it steps or not. A job draws what the forest's subscriptions and those it answers want, and nothing else. */
+ * A resident belongs to whoever holds the service's lock, except its `work`, which belongs to a worker while `busy`.
+ * Messages that act on it wait in `waiting`, in order, whoever sent them; when it is idle, everything up to and
+ * including the first QUERY becomes one job. So a QUERY sees exactly the motions and parameters that came before it,
+ * and the result does not depend on how many workers there are. Whoever only wants to see the forest as it stands is
+ * answered by the next job, whether it steps or not. A job draws what the forest's subscriptions and those it answers
+ * want, and nothing else. */
 #ifndef REGISTRY_H
 #define REGISTRY_H
 

@@ -1,5 +1,6 @@
 /* service.c: see service.h. */
 #include "service.h"
+#include "base/assert.h"
 #include "limits.h"
 #include "subscription.h"
 
@@ -8,6 +9,10 @@ bool service_init(service *s, const service_options *options)
     *s = (service){.options = *options};
     s->uploads.greatest = LIMIT_UPLOADS_BYTES;
     s->started_us = options->clock_us();
+    s->has_lock = pthread_mutex_init(&s->lock, NULL) == 0;
+    if (!s->has_lock) {
+        return false;
+    }
     s->pool = worker_pool_create(options->workers, options->wake, options->wake_context);
     if (s->pool && registry_init(&s->forests, options->max_forests, s->pool, subscriptions_wish) &&
         handle_table_init(&s->sessions, options->max_sessions)) {
@@ -22,5 +27,20 @@ void service_fini(service *s)
     worker_pool_destroy(s->pool); /* first: no worker may hold what is freed next */
     registry_fini(&s->forests);
     handle_table_fini(&s->sessions);
+    if (s->has_lock) {
+        pthread_mutex_destroy(&s->lock);
+    }
     *s = (service){0};
+}
+
+void service_lock(service *s)
+{
+    int failed = pthread_mutex_lock(&s->lock);
+    ASSERT(!failed);
+}
+
+void service_unlock(service *s)
+{
+    int failed = pthread_mutex_unlock(&s->lock);
+    ASSERT(!failed);
 }

@@ -1,4 +1,11 @@
-/* service.h: what all sessions share. The I/O thread's, all of it. */
+/* service.h: what all sessions share, and the one lock over it.
+ *
+ * The lock guards the service and everything that is reached from it: sessions, subscriptions, the registry and its
+ * residents (but not the `work` of one that is busy, which is its worker's), uploads, counters, and what connections
+ * have still to send. Whoever uses any of it, on whichever thread, holds the lock meanwhile: while a message is carried
+ * out, while a finished job is brought to those who asked. That takes microseconds. Nobody holds it while it sleeps in
+ * poll, receives, sends, simulates or encodes. The worker pool has a lock of its own, taken within this one and never
+ * the other way round; published pictures are counted atomically and need none. */
 #ifndef SERVICE_H
 #define SERVICE_H
 
@@ -8,13 +15,15 @@
 #include "upload.h"
 #include "worker.h"
 
+#include <pthread.h>
+
 typedef struct service_options {
     unsigned workers; /* 0: jobs run where worker_pool_run_one is called */
     uint32_t max_forests, max_sessions;
     bool auth_required;
     uint8_t token[AUTH_TOKEN_SIZE];
     int64_t (*clock_us)(void);   /* clock_monotonic_us, or a test's */
-    void (*wake)(void *context); /* called from workers when a job is done */
+    void (*wake)(void *context); /* called from workers, without a lock, when a job is done */
     void *wake_context;
 } service_options;
 
@@ -25,7 +34,9 @@ typedef struct service_counters {
 } service_counters;
 
 typedef struct service {
-    service_options options;
+    service_options options; /* never changed: read without the lock */
+    pthread_mutex_t lock;    /* service_lock */
+    bool has_lock;
     worker_pool *pool;
     registry forests;
     handle_table sessions; /* of struct session */
@@ -37,7 +48,11 @@ typedef struct service {
 
 /* Starts the workers. False: no memory or no threads; nothing is left behind then. */
 bool service_init(service *s, const service_options *options);
-/* After the last session's end. Waits for jobs that run. Accepts a zeroed one. */
+/* After the last session's end, without the lock. Waits for jobs that run. Accepts a zeroed one. */
 void service_fini(service *s);
+
+/* The lock over all of it; not recursive. One thread alone, as in tests without threads, may do without. */
+void service_lock(service *s);
+void service_unlock(service *s);
 
 #endif

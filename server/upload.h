@@ -2,7 +2,7 @@
  *
  * Memory grows with the bytes that have come, never with what a peer announces, and all uploads together have one
  * budget. A complete upload may be used by several CREATEs, each holding a reference while it waits for its worker;
- * references belong to the I/O thread, the bytes of a complete upload may be read by any. */
+ * references are counted under the service's lock, the bytes of a complete upload may be read by any. */
 #ifndef UPLOAD_H
 #define UPLOAD_H
 

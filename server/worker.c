@@ -68,7 +68,7 @@ static void *worker_main(void *argument)
     }
 }
 
-/* Signals belong to the I/O thread: threads inherit the mask that stands while they are made. */
+/* Signals belong to the main thread: threads inherit the mask that stands while they are made. */
 static bool start_threads(worker_pool *pool, unsigned count)
 {
     sigset_t all, before;

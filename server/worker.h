@@ -1,8 +1,8 @@
 /* worker.h: threads that run jobs, and the way of the results back.
  *
- * The I/O thread submits; a worker takes the oldest job, runs it, and puts it on the list of the done; `wake` tells the
- * I/O thread to look there. A job is a member of the thing it works on (a forest), which nobody else touches from
- * submit until the I/O thread takes the job back, so the queue needs no memory of its own and is never longer than
+ * A worker takes the oldest job that was submitted, runs it, puts it on the list of the done and calls `wake`, which
+ * sees to it that somebody looks there. A job is a member of the thing it works on (a forest), which nobody else
+ * touches from submit until the job is taken back, so the queue needs no memory of its own and is never longer than
  * there are forests. */
 #ifndef WORKER_H
 #define WORKER_H
@@ -17,7 +17,7 @@ typedef struct job {
 typedef struct worker_pool worker_pool;
 
 /* Starts `count` threads, with all signals blocked. With 0, jobs run only where worker_pool_run_one is called. `wake`
- * is called from workers. NULL: no memory or no threads. */
+ * is called from workers, without a lock. NULL: no memory or no threads. */
 worker_pool *worker_pool_create(unsigned count, void (*wake)(void *context), void *context);
 
 /* Waits for the jobs that run and joins the threads. Jobs not begun, and done ones not taken, stay with their owners.
