@@ -74,7 +74,7 @@ $(B)/tests: $(call objects,$(SRC_unit)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LI
 # The tests count what the heap is asked for (tests/unit/test_allocation.c): the linker leads these calls there.
 $(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_alloc posix_memalign free)
 # What reads bytes from outside, under libFuzzer: config=fuzz CC=clang CXX=clang++ (tests/soak.sh runs it).
-$(B)/fuzz: $(call objects,$(SRC_fuzz) tests/unit/proto_fill.c) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(B)/fuzz: $(call objects,$(SRC_fuzz) $(addprefix tests/unit/,proto_fill.c server_fixture.c interleaving.c interleaving_actor.c)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/fuzz: WRAP := -fsanitize=fuzzer
 $(PROGRAMS) $(B)/tests $(B)/fuzz:
 	@echo "  LD   $@"

@@ -135,7 +135,7 @@ took "the most violent motion"
 all_bits
 took "same bits"
 fuzzer
-for target in strands hierarchy motion message snapshot frame json delta; do
+for target in strands hierarchy motion message snapshot frame json delta session; do
     fuzz "$target"
 done
 took fuzzing

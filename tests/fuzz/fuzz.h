@@ -13,7 +13,7 @@ typedef struct fuzz_target {
     void (*seed)(void (*give)(const void *bytes, size_t size));
 } fuzz_target;
 
-enum { FUZZ_TARGETS = 8 };
+enum { FUZZ_TARGETS = 9 };
 extern const fuzz_target fuzz_targets[FUZZ_TARGETS];
 
 void fuzz_seed_strands(void (*give)(const void *bytes, size_t size));
@@ -27,5 +27,9 @@ void fuzz_seed_json(void (*give)(const void *bytes, size_t size));
 /* delta.c has both. */
 void fuzz_run_delta(const uint8_t *bytes, size_t size);
 void fuzz_seed_delta(void (*give)(const void *bytes, size_t size));
+
+/* session.c likewise. */
+void fuzz_run_session(const uint8_t *bytes, size_t size);
+void fuzz_seed_session(void (*give)(const void *bytes, size_t size));
 
 #endif

@@ -163,4 +163,5 @@ const fuzz_target fuzz_targets[FUZZ_TARGETS] = {
     {"frame", frame_run, fuzz_seed_frame},
     {"json", json_run, fuzz_seed_json},
     {"delta", fuzz_run_delta, fuzz_seed_delta},
+    {"session", fuzz_run_session, fuzz_seed_session},
 };
