@@ -85,10 +85,7 @@ static bool accept_created(service *shared, resident *r, session *asker)
         }
     } else if (!asker || asker->state == SESSION_CLOSING) {
         log_write(LOG_INFO, "forest not kept", "name=%s why=\"its maker is gone\"", quoted);
-    } else if (!session_attach(asker, r->handle, true)) {
-        session_error(asker, PROTO_CREATE, r->creator.request, PROTO_ERROR_LIMIT,
-                      "a connection has %d forests open at most; DETACH from one", LIMIT_SESSION_FORESTS);
-    } else {
+    } else if (session_attach(asker, PROTO_CREATE, r->creator.request, r, true)) {
         log_write(LOG_INFO, "forest created", "peer=%s name=%s strands=%lu nodes=%lu build_us=%lu", asker->peer, quoted,
                   (unsigned long)r->work.info.strand_count, (unsigned long)r->work.info.finest_nodes,
                   (unsigned long)r->work.build_us);

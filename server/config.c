@@ -11,6 +11,7 @@
 typedef struct given {
     const char *listen, *state_directory, *token_file, *level;
     long long workers, max_forests, max_connections;
+    long long resume_grace_s, forest_grace_s, quiet_s;
     bool no_auth;
 } given;
 
@@ -36,6 +37,12 @@ static option_result read_options(int count, char *const *arguments, given *g, c
         {"max-forests", OPTION_INTEGER, "N", &g->max_forests, 1, LIMIT_FORESTS_GREATEST, "forests that may live"},
         {"max-connections", OPTION_INTEGER, "N", &g->max_connections, 1, LIMIT_CONNECTIONS_GREATEST,
          "connections that may be open"},
+        {"resume-grace", OPTION_INTEGER, "S", &g->resume_grace_s, 0, LIMIT_GRACE_S_GREATEST,
+         "seconds that a session which was cut off can be resumed"},
+        {"forest-grace", OPTION_INTEGER, "S", &g->forest_grace_s, 0, LIMIT_GRACE_S_GREATEST,
+         "seconds that a forest lives on when nobody has it open; 0: for ever"},
+        {"quiet-timeout", OPTION_INTEGER, "S", &g->quiet_s, 0, LIMIT_GRACE_S_GREATEST,
+         "seconds after which a silent client is let go; 0: never"},
         {"log-level", OPTION_TEXT, "LEVEL", &g->level, 0, 0, "error, warn, info or debug"},
     };
     const option_program program = {.name = "awtd",
@@ -86,7 +93,10 @@ option_result config_read(int count, char *const *arguments, config *out, char *
                .level = "info",
                .workers = processors(),
                .max_forests = LIMIT_FORESTS,
-               .max_connections = LIMIT_CONNECTIONS};
+               .max_connections = LIMIT_CONNECTIONS,
+               .resume_grace_s = LIMIT_RESUME_GRACE_S,
+               .forest_grace_s = LIMIT_FOREST_GRACE_S,
+               .quiet_s = LIMIT_QUIET_S};
     *out = (config){0};
     option_result result = read_options(count, arguments, &g, error, error_size);
     if (result != OPTIONS_RUN) {
@@ -96,6 +106,9 @@ option_result config_read(int count, char *const *arguments, config *out, char *
     out->max_forests = (uint32_t)g.max_forests;
     out->max_connections = (uint32_t)g.max_connections;
     out->no_auth = g.no_auth;
+    out->resume_grace_us = g.resume_grace_s * 1000000;
+    out->forest_grace_us = g.forest_grace_s * 1000000;
+    out->quiet_us = g.quiet_s * 1000000;
     if (!options_split_address(g.listen, out->host, sizeof out->host, out->port, sizeof out->port)) {
         snprintf(error, error_size, "--listen takes HOST:PORT, with an IPv6 address as [ADDRESS]:PORT, not \"%s\"",
                  g.listen);

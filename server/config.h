@@ -14,6 +14,7 @@ typedef struct config {
     char token_file[LIMIT_PATH];
     bool own_token_file; /* the token file was named: its directory is not the daemon's to make */
     bool no_auth;
+    int64_t resume_grace_us, forest_grace_us, quiet_us; /* see service.h */
     log_level level;
 } config;
 

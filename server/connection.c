@@ -153,7 +153,7 @@ bool connection_has_work(const connection *c)
 
 int64_t connection_deadline_us(const connection *c)
 {
-    int64_t deadline_us = session_stream_due(&c->talk);
+    int64_t deadline_us = session_due_us(&c->talk);
     if (c->out.first) {
         deadline_us = c->progress_us + LIMIT_WRITE_STALL_US; /* streams wait for it too */
     }
@@ -293,7 +293,7 @@ void connection_turn(connection *c, int revents)
     }
     check_clock(c);
     write_turn(c);
-    session_stream(&c->talk);
+    session_tick(&c->talk);
     write_turn(c);
     check_end(c);
 }

@@ -76,6 +76,9 @@ bool daemon_run(const config *asked, char *error, size_t error_size)
     service_options options = {.workers = asked->workers,
                                .max_forests = asked->max_forests,
                                .max_sessions = asked->max_connections + LIMIT_CONNECTIONS_REFUSED,
+                               .resume_grace_us = asked->resume_grace_us,
+                               .forest_grace_us = asked->forest_grace_us,
+                               .quiet_us = asked->quiet_us,
                                .clock_us = clock_monotonic_us};
     char bound[NET_ADDRESS];
     bool served = false;

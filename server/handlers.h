@@ -10,6 +10,9 @@ typedef void session_handler(session *s, const proto_message *message);
 /* session_greeting.c: how a connection begins and ends */
 session_handler session_hello, session_auth, session_ping, session_pong, session_client_bye;
 
+/* session_resume.c */
+session_handler session_resume;
+
 /* session_upload.c */
 session_handler session_upload;
 

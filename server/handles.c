@@ -50,6 +50,12 @@ void *handle_find(const handle_table *table, uint64_t handle)
     return slot ? slot->item : NULL;
 }
 
+void *handle_at(const handle_table *table, uint32_t index)
+{
+    ASSERT(index < table->capacity);
+    return table->slots[index].item;
+}
+
 void handle_remove(handle_table *table, uint64_t handle)
 {
     handle_slot *slot = slot_of(table, handle);

@@ -28,6 +28,8 @@ void handle_table_fini(handle_table *table);
 uint64_t handle_add(handle_table *table, void *item);
 /* NULL: no such handle, or not any more. */
 void *handle_find(const handle_table *table, uint64_t handle);
+/* What is in place `index` < capacity; NULL: nothing. */
+void *handle_at(const handle_table *table, uint32_t index);
 /* Of a handle that handle_find knows. */
 void handle_remove(handle_table *table, uint64_t handle);
 

@@ -13,6 +13,10 @@ enum {
     LIMIT_FORESTS = 256,
     LIMIT_FORESTS_GREATEST = 65536,
     LIMIT_WORKERS_GREATEST = 256,
+    LIMIT_RESUME_GRACE_S = 60, /* these three: the defaults, seconds, and the greatest value they take */
+    LIMIT_FOREST_GRACE_S = 3600,
+    LIMIT_QUIET_S = 120,
+    LIMIT_GRACE_S_GREATEST = 31536000,
     LIMIT_BACKLOG = 128, /* connections that wait for accept */
     LIMIT_PATH = 1024,   /* bytes of the state directory's and the token file's path */
 
@@ -20,6 +24,7 @@ enum {
     LIMIT_SESSION_FORESTS = 256, /* forests open on it */
     LIMIT_SESSION_UPLOADS = 4,   /* uploads begun or complete */
     LIMIT_SESSION_SUBSCRIPTIONS = 16,
+    LIMIT_PARKED = 1024,        /* sessions kept for RESUME */
     LIMIT_SESSION_PENDING = 16, /* requests that wait for a worker; beyond, its next message waits unread */
 
     /* one forest: inputs that wait for their turn */
@@ -55,6 +60,7 @@ enum {
 /* Times, microseconds. */
 #define LIMIT_HANDSHAKE_US INT64_C(10000000)   /* from accept until the client is in */
 #define LIMIT_WRITE_STALL_US INT64_C(30000000) /* a peer that takes nothing for so long is let go */
+#define LIMIT_FOREST_LOOK_US INT64_C(1000000)  /* from one look for forests that nobody has open to the next */
 #define LIMIT_LINGER_US INT64_C(1000000)       /* after the last byte out, for the peer to close first */
 #define LIMIT_PROGRESS_US INT64_C(100000)      /* from one PROGRESS to the next */
 #define LIMIT_ACCEPT_PAUSE_US INT64_C(100000)  /* no accept for so long when descriptors have run out */

@@ -1,7 +1,7 @@
 /* loop.c: see loop.h. */
 #include "loop.h"
 #include "log.h"
-#include "making.h"
+#include "upkeep.h"
 #include "net.h"
 
 #include <errno.h>
@@ -144,7 +144,7 @@ static void turn(loop *l, int64_t until_us)
 {
     int64_t before_us = l->shared->options.clock_us();
     uint32_t count = l->count;
-    int64_t due_us = making_due_us(l->shared);
+    int64_t due_us = upkeep_due_us(l->shared);
     fill_slots(l, before_us);
     int patience_ms = sleep_ms(l, before_us, due_us < until_us ? due_us : until_us);
     service_unlock(l->shared);
@@ -158,7 +158,7 @@ static void turn(loop *l, int64_t until_us)
     int64_t now_us = l->shared->options.clock_us();
     bool results = l->polled[SLOT_WAKE].revents != 0;
     wake_clear(l->bell);
-    making_tell(l->shared, now_us);
+    upkeep_do(l->shared, now_us);
     give_turns(l, count, results, now_us);
     if (l->polled[SLOT_LISTENER].revents & POLLIN) {
         accept_connections(l, now_us);

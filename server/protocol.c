@@ -15,6 +15,7 @@ static const struct rule {
     {PROTO_HELLO, IN_GREETING, session_hello},
     {PROTO_AUTH, IN_AUTH, session_auth},
     {PROTO_BYE, IN_AUTH | IN_OPEN, session_client_bye},
+    {PROTO_RESUME, IN_OPEN, session_resume},
     {PROTO_PING, IN_OPEN, session_ping},
     {PROTO_PONG, IN_OPEN, session_pong},
     {PROTO_LIST_STYLES, IN_OPEN, session_list_styles},
@@ -32,7 +33,6 @@ static const struct rule {
     {PROTO_UNSUBSCRIBE, IN_OPEN, session_unsubscribe},
     {PROTO_CREDIT, IN_OPEN, session_credit},
     {PROTO_STATS, IN_OPEN, session_stats},
-    {PROTO_RESUME, IN_OPEN, NULL},
     {PROTO_SET_CLOCK, IN_OPEN, NULL},
     {PROTO_STEP_MANY, IN_OPEN, NULL},
     {PROTO_SNAPSHOT, IN_OPEN, NULL},
@@ -60,6 +60,7 @@ static void refuse(session *s, const proto_header *header)
 
 protocol_verdict protocol_judge(session *s, const proto_header *header)
 {
+    session_heard(s);
     if (s->state == SESSION_CLOSING) {
         return PROTOCOL_REFUSE;
     }

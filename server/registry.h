@@ -28,11 +28,13 @@ typedef struct resident {
     struct resident *next, *previous; /* in order of creation */
     uint8_t drive_token[REGISTRY_TOKEN_SIZE], view_token[REGISTRY_TOKEN_SIZE];
     char name[RECIPE_NAME];
-    origin creator; /* whom CREATE is answered to */
-    bool ready;     /* made; before, nobody but CREATE's answer may touch it */
-    bool busy;      /* a worker has `work` */
-    bool doomed;    /* ended; freed when the worker hands `work` back */
-    bool tells;     /* is being made for someone who wants PROGRESS */
+    origin creator;   /* whom CREATE is answered to */
+    bool ready;       /* made; before, nobody but CREATE's answer may touch it */
+    bool busy;        /* a worker has `work` */
+    bool doomed;      /* ended; freed when the worker hands `work` back */
+    bool tells;       /* is being made for someone who wants PROGRESS */
+    uint32_t holders; /* connections, and parked sessions, that have it open (holdings.h) */
+    int64_t left_us;  /* when the last holder left */
 
     forest_input *waiting, **waiting_end;
     uint32_t waiting_inputs, waiting_queries;

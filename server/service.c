@@ -9,6 +9,7 @@ bool service_init(service *s, const service_options *options)
     *s = (service){.options = *options};
     s->uploads.greatest = LIMIT_UPLOADS_BYTES;
     s->started_us = options->clock_us();
+    s->forests_due_us = options->forest_grace_us > 0 ? s->started_us : INT64_MAX;
     s->has_lock = pthread_mutex_init(&s->lock, NULL) == 0;
     if (!s->has_lock) {
         return false;
@@ -25,6 +26,7 @@ bool service_init(service *s, const service_options *options)
 void service_fini(service *s)
 {
     worker_pool_destroy(s->pool); /* first: no worker may hold what is freed next */
+    parking_fini(&s->parked, &s->forests, 0);
     registry_fini(&s->forests);
     handle_table_fini(&s->sessions);
     if (s->has_lock) {

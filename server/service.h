@@ -11,8 +11,7 @@
 
 #include "auth.h"
 #include "handles.h"
-#include "registry.h"
-#include "upload.h"
+#include "parking.h"
 #include "worker.h"
 
 #include <pthread.h>
@@ -22,6 +21,9 @@ typedef struct service_options {
     uint32_t max_forests, max_sessions;
     bool auth_required;
     uint8_t token[AUTH_TOKEN_SIZE];
+    int64_t resume_grace_us;     /* that a session which was cut off can be resumed */
+    int64_t forest_grace_us;     /* that a forest lives on when nobody has it open; 0: for ever */
+    int64_t quiet_us;            /* that a client may be silent; 0: for ever */
     int64_t (*clock_us)(void);   /* clock_monotonic_us, or a test's */
     void (*wake)(void *context); /* called from workers, without a lock, when a job is done */
     void *wake_context;
@@ -41,9 +43,11 @@ typedef struct service {
     registry forests;
     handle_table sessions; /* of struct session */
     upload_budget uploads;
+    parking parked;
     service_counters counters;
     int64_t started_us;
-    int64_t progress_us; /* when PROGRESS is due next, if anyone wants it */
+    int64_t progress_us;    /* when PROGRESS is due next, if anyone wants it */
+    int64_t forests_due_us; /* when forests are looked at next that nobody has open; INT64_MAX: never */
 } service;
 
 /* Starts the workers. False: no memory or no threads; nothing is left behind then. */

@@ -10,7 +10,7 @@
 
 bool session_init(session *s, service *shared, const session_sink *sink, const char *peer)
 {
-    *s = (session){.shared = shared, .sink = *sink};
+    *s = (session){.shared = shared, .sink = *sink, .heard_us = shared->options.clock_us()};
     s->handle = handle_add(&shared->sessions, s);
     if (s->handle == 0) {
         *s = (session){0};
@@ -21,15 +21,28 @@ bool session_init(session *s, service *shared, const session_sink *sink, const c
     return true;
 }
 
-/* Says which forests nobody is left to end but those who hold the token. */
-static void log_forests_left(const session *s)
+/* Whoever was cut off may come back for what it held; whoever said BYE, or was sent away, has given it up. */
+static void leave_holdings(session *s)
 {
-    uint32_t driven = 0;
-    for (uint32_t i = 0; i < s->attachment_count; i++) {
-        driven += s->attachments[i].may_drive && registry_find(&s->shared->forests, s->attachments[i].forest);
-    }
+    const service_options *options = &s->shared->options;
+    const int64_t now_us = options->clock_us();
+    const uint32_t driven = holdings_driven(&s->holds, &s->shared->forests);
     if (driven > 0) {
         log_write(LOG_INFO, "forests live on", "peer=%s forests=%lu", s->peer, (unsigned long)driven);
+    }
+    if (s->state == SESSION_OPEN && options->resume_grace_us > 0 && !holdings_are_none(&s->holds)) {
+        parking_leave(&s->shared->parked, s->token, &s->holds, &s->shared->forests, now_us,
+                      now_us + options->resume_grace_us);
+    }
+    holdings_fini(&s->holds, &s->shared->forests, now_us);
+}
+
+void session_end_subscriptions(session *s)
+{
+    for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
+        if (s->subscriptions[i].handle) {
+            subscription_end(&s->subscriptions[i]);
+        }
     }
 }
 
@@ -38,15 +51,8 @@ void session_fini(session *s)
     if (!s->shared) {
         return;
     }
-    log_forests_left(s);
-    for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
-        if (s->subscriptions[i].handle) {
-            subscription_end(&s->subscriptions[i]);
-        }
-    }
-    for (uint32_t i = 0; i < LIMIT_SESSION_UPLOADS; i++) {
-        upload_release(s->uploads[i]);
-    }
+    session_end_subscriptions(s);
+    leave_holdings(s);
     handle_remove(&s->shared->sessions, s->handle);
     s->shared->counters.sessions--;
     *s = (session){0};
@@ -117,51 +123,24 @@ void session_picture(session *s, picture *shown, const view *v, uint64_t request
 
 /* ---- forests of a session --------------------------------------------------------------------------------------- */
 
-static attachment *find_attachment(session *s, uint64_t forest)
+bool session_attach(session *s, uint16_t about, uint64_t request, resident *r, bool may_drive)
 {
-    for (uint32_t i = 0; i < s->attachment_count; i++) {
-        if (s->attachments[i].forest == forest) {
-            return &s->attachments[i];
-        }
-    }
-    return NULL;
-}
-
-/* Forgets forests that have ended elsewhere. */
-static void drop_stale_attachments(session *s)
-{
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < s->attachment_count; i++) {
-        if (registry_find(&s->shared->forests, s->attachments[i].forest)) {
-            s->attachments[kept++] = s->attachments[i];
-        }
-    }
-    s->attachment_count = kept;
-}
-
-bool session_attach(session *s, uint64_t forest, bool may_drive)
-{
-    attachment *found = find_attachment(s, forest);
-    if (found) {
-        found->may_drive = found->may_drive || may_drive;
+    switch (holdings_open(&s->holds, &s->shared->forests, r, may_drive)) {
+    case 0:
         return true;
-    }
-    if (s->attachment_count == LIMIT_SESSION_FORESTS) {
-        drop_stale_attachments(s);
-    }
-    if (s->attachment_count == LIMIT_SESSION_FORESTS) {
+    case PROTO_ERROR_LIMIT:
+        session_error(s, about, request, PROTO_ERROR_LIMIT, "a connection has %d forests open at most; DETACH from one",
+                      LIMIT_SESSION_FORESTS);
+        return false;
+    default:
+        session_error(s, about, request, PROTO_ERROR_NO_MEMORY, NULL);
         return false;
     }
-    s->attachments[s->attachment_count++] = (attachment){.forest = forest, .may_drive = may_drive};
-    return true;
 }
 
 void session_detach(session *s, uint64_t forest)
 {
-    attachment *found = find_attachment(s, forest);
-    if (found) {
-        *found = s->attachments[--s->attachment_count];
-    }
+    holdings_close(&s->holds, &s->shared->forests, forest, s->shared->options.clock_us());
     for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
         subscription *sub = &s->subscriptions[i];
         if (sub->handle && sub->forest->handle == forest) {
@@ -173,7 +152,7 @@ void session_detach(session *s, uint64_t forest)
 resident *session_resident(session *s, const proto_message *message, uint64_t forest, bool to_drive)
 {
     resident *r = registry_find(&s->shared->forests, forest);
-    const attachment *open = r ? find_attachment(s, forest) : NULL;
+    const attachment *open = r ? holdings_find(&s->holds, forest) : NULL;
     if (!r) {
         session_error(s, message->type, message->request, PROTO_ERROR_NO_FOREST, NULL);
     } else if (!open) {
@@ -267,7 +246,9 @@ void session_stream(session *s)
     }
 }
 
-int64_t session_stream_due(const session *s)
+/* ---- the clock --------------------------------------------------------------------------------------------------- */
+
+static int64_t stream_due_us(const session *s)
 {
     int64_t due_us = INT64_MAX;
     for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
@@ -277,4 +258,51 @@ int64_t session_stream_due(const session *s)
         }
     }
     return due_us;
+}
+
+/* A client of which nothing is awaited but a sign of life: what it sent has been read, what it asked is answered. */
+static bool is_watched(const session *s)
+{
+    return s->state == SESSION_OPEN && s->shared->options.quiet_us > 0 && s->pending == 0;
+}
+
+/* It is asked after a third of the time that it may be silent. */
+static int64_t quiet_due_us(const session *s)
+{
+    const int64_t quiet_us = s->shared->options.quiet_us;
+    return is_watched(s) ? s->heard_us + (s->pinged ? quiet_us : quiet_us / 3) : INT64_MAX;
+}
+
+static void watch(session *s, int64_t now_us)
+{
+    if (now_us < quiet_due_us(s)) {
+        return;
+    }
+    if (s->pinged) {
+        session_error(s, 0, 0, PROTO_ERROR_TIMED_OUT, "nothing came for %lld s, not even an answer to PING",
+                      (long long)(s->shared->options.quiet_us / 1000000));
+        return;
+    }
+    proto_message ping = {.type = PROTO_PING};
+    ping.as.ping.sent_us = now_us;
+    s->pinged = true;
+    session_send(s, &ping);
+}
+
+void session_heard(session *s)
+{
+    s->heard_us = s->shared->options.clock_us();
+    s->pinged = false;
+}
+
+void session_tick(session *s)
+{
+    watch(s, s->shared->options.clock_us());
+    session_stream(s);
+}
+
+int64_t session_due_us(const session *s)
+{
+    const int64_t stream_us = stream_due_us(s), quiet_us = quiet_due_us(s);
+    return stream_us < quiet_us ? stream_us : quiet_us;
 }

@@ -28,12 +28,6 @@ typedef enum session_state {
     SESSION_CLOSING /* nothing more is listened to; what was said is still sent */
 } session_state;
 
-/* A forest that this session may look at, or move too. */
-typedef struct attachment {
-    uint64_t forest;
-    bool may_drive;
-} attachment;
-
 typedef struct session {
     service *shared;
     session_sink sink;
@@ -41,12 +35,13 @@ typedef struct session {
     session_state state;
     char peer[80]; /* for the log */
     uint8_t nonce[AUTH_NONCE_SIZE];
-    uint32_t pending;       /* requests that wait for a worker */
-    uint32_t last_write_us; /* written by whoever is behind the sink: see FRAME */
+    uint8_t token[PARKING_TOKEN_SIZE]; /* what RESUME names it by */
+    int64_t heard_us;                  /* when the last message came */
+    bool pinged;                       /* and has been asked whether it is there since */
+    uint32_t pending;                  /* requests that wait for a worker */
+    uint32_t last_write_us;            /* written by whoever is behind the sink: see FRAME */
 
-    uint32_t attachment_count;
-    attachment attachments[LIMIT_SESSION_FORESTS];
-    upload *uploads[LIMIT_SESSION_UPLOADS]; /* NULL: free */
+    holdings holds;
     uint64_t subscription_serial;
     uint32_t subscription_next; /* whose turn it is */
     subscription subscriptions[LIMIT_SESSION_SUBSCRIPTIONS];
@@ -54,7 +49,7 @@ typedef struct session {
 
 /* False: as many sessions as the service takes. `peer` is for the log. */
 bool session_init(session *s, service *shared, const session_sink *sink, const char *peer);
-/* Ends its uploads and subscriptions; its forests live on. Accepts a zeroed one. */
+/* Ends its subscriptions; its forests live on. What it holds is parked if it was cut off. Accepts a zeroed one. */
 void session_fini(session *s);
 
 /* The session that asked; NULL: it is gone. */
@@ -85,8 +80,8 @@ void session_picture(session *s, picture *shown, const view *v, uint64_t request
 
 /* ---- forests of a session --------------------------------------------------------------------------------------- */
 
-/* Opens a forest, or widens what it may do there. False: LIMIT_SESSION_FORESTS are open. */
-bool session_attach(session *s, uint64_t forest, bool may_drive);
+/* Opens a forest, or widens what it may do there. False: an ERROR about that message was sent. */
+bool session_attach(session *s, uint16_t about, uint64_t request, resident *r, bool may_drive);
 /* Ends the session's subscriptions on it too. */
 void session_detach(session *s, uint64_t forest);
 
@@ -100,13 +95,24 @@ bool session_push(session *s, const proto_message *message, resident *r, forest_
 
 /* ---- subscriptions ---------------------------------------------------------------------------------------------- */
 
+void session_end_subscriptions(session *s);
 /* NULL: none of that handle. */
 subscription *session_subscription(session *s, uint64_t handle);
 
 /* Sends waiting frames, one at a time as the sink drains. */
 void session_stream(session *s);
 
-/* Monotonic time at which session_stream has something to do that only the clock allows; INT64_MAX: never. */
-int64_t session_stream_due(const session *s);
+/* ---- the clock --------------------------------------------------------------------------------------------------- */
+
+/* Sends what only the clock allows: frames whose time has come, PING to who has been silent. Who stays silent is let
+ * go.
+ */
+void session_tick(session *s);
+
+/* A message has come. */
+void session_heard(session *s);
+
+/* Monotonic time at which session_tick has something to do; INT64_MAX: never. */
+int64_t session_due_us(const session *s);
 
 #endif

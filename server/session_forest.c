@@ -10,8 +10,8 @@
 static upload *find_upload(session *s, uint32_t number)
 {
     for (uint32_t i = 0; i < LIMIT_SESSION_UPLOADS; i++) {
-        if (s->uploads[i] && s->uploads[i]->number == number && s->uploads[i]->complete) {
-            return s->uploads[i];
+        if (s->holds.uploads[i] && s->holds.uploads[i]->number == number && s->holds.uploads[i]->complete) {
+            return s->holds.uploads[i];
         }
     }
     return NULL;
@@ -63,9 +63,7 @@ void session_attach_forest(session *s, const proto_message *message)
         session_error(s, message->type, message->request, PROTO_ERROR_WRONG_TOKEN, NULL);
         return;
     }
-    if (!session_attach(s, r->handle, drive)) {
-        session_error(s, message->type, message->request, PROTO_ERROR_LIMIT,
-                      "a connection has %d forests open at most; DETACH from one", LIMIT_SESSION_FORESTS);
+    if (!session_attach(s, message->type, message->request, r, drive)) {
         return;
     }
     proto_message reply = {.type = PROTO_ATTACH_REPLY, .request = message->request};

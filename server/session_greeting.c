@@ -15,6 +15,7 @@ static void welcome(session *s, uint64_t request)
     w->greatest_payload = PROTO_MAX_REQUEST;
     w->server = proto_str_of("awtd " AWTD_VERSION);
     memcpy(w->nonce, s->nonce, sizeof w->nonce);
+    memcpy(w->session, s->token, sizeof w->session);
     s->state = w->auth_required ? SESSION_AUTH : SESSION_OPEN;
     session_send(s, &reply);
 }
@@ -31,7 +32,7 @@ void session_hello(session *s, const proto_message *message)
         session_error(s, PROTO_HELLO, message->request, PROTO_ERROR_BAD_VERSION,
                       "this daemon speaks version %d of the protocol, the client %u to %u", PROTO_VERSION,
                       (unsigned)hello->lowest_version, (unsigned)hello->highest_version);
-    } else if (!random_fill(s->nonce, sizeof s->nonce)) {
+    } else if (!random_fill(s->nonce, sizeof s->nonce) || !random_fill(s->token, sizeof s->token)) {
         session_error(s, PROTO_HELLO, message->request, PROTO_ERROR_BUSY, NULL);
     } else {
         welcome(s, message->request);
@@ -63,7 +64,7 @@ void session_ping(session *s, const proto_message *message)
     session_send(s, &reply);
 }
 
-/* The daemon sends no PING yet; an answer to none does no harm. */
+/* That it came says all (session_heard). */
 void session_pong(session *s, const proto_message *message)
 {
     (void)s;

@@ -4,8 +4,8 @@
 static upload **upload_place(session *s, uint32_t number)
 {
     for (uint32_t i = 0; i < LIMIT_SESSION_UPLOADS; i++) {
-        if (s->uploads[i] && s->uploads[i]->number == number) {
-            return &s->uploads[i];
+        if (s->holds.uploads[i] && s->holds.uploads[i]->number == number) {
+            return &s->holds.uploads[i];
         }
     }
     return NULL;
@@ -14,8 +14,8 @@ static upload **upload_place(session *s, uint32_t number)
 static upload **free_place(session *s)
 {
     for (uint32_t i = 0; i < LIMIT_SESSION_UPLOADS; i++) {
-        if (!s->uploads[i]) {
-            return &s->uploads[i];
+        if (!s->holds.uploads[i]) {
+            return &s->holds.uploads[i];
         }
     }
     return NULL;

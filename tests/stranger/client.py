@@ -108,7 +108,7 @@ class Client:
 
     def open(self):
         """HELLO and, where the daemon wants it, AUTH; checks that the daemon holds the token too."""
-        welcome = self.greet()
+        welcome = self.welcome = self.greet()
         if welcome["auth_required"]:
             nonce = os.urandom(32)
             reply = self.call("AUTH", nonce=nonce, proof=self.prove(b"awtd auth 1", welcome["nonce"], nonce))

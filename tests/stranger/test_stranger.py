@@ -136,6 +136,16 @@ class Stranger(unittest.TestCase):
         self.assertEqual((name, fields["code"]), ("ERROR", PAGE.errors["TOO_LONG"]))
         self.closed(client)
 
+    def test_session_that_was_cut_off_is_resumed(self):
+        first = self.open().open()
+        made = self.create(first)
+        first.close()
+        second = self.open().open()
+        reply = second.call("RESUME", session=first.welcome["session"])
+        self.assertEqual(reply["forests"], [{"forest": made["forest"], "may_drive": 1}])
+        self.advance(second, made["forest"], 1)
+        self.refused("NO_SESSION", self.open().open().call, "RESUME", session=first.welcome["session"])
+
     # ---- requests ----
 
     def test_ping_is_answered_with_the_times(self):

@@ -4,10 +4,11 @@
 
 #include "base/assert.h"
 #include "base/hash.h"
+#include "upkeep.h"
 
 #include <stdlib.h>
 
-enum { ACTORS = 4, FORESTS_MOST = 4, END_TURNS = 200 };
+enum { ACTORS = 4, FORESTS_MOST = 4, END_TURNS = 200, GRACE_US = 500000, QUIET_US = 2000000 };
 
 /* ---- decisions --------------------------------------------------------------------------------------------------- */
 
@@ -45,6 +46,8 @@ static void let_act(stage *s, actor *who)
         actor_cut(who);
     } else if (n == 1) {
         actor_say_garbage(who);
+    } else if (n == 5) {
+        session_tick(&who->talk);
     } else if (n < 5) {
         actor_congest(who, n == 2);
     } else if (n < 16) {
@@ -64,6 +67,7 @@ static void decide_once(stage *s, actor *actors)
         break;
     case 1:
         fake_now_us += 1000 * (int64_t)s->decide(s->context, 200);
+        upkeep_do(s->shared, fake_now_us);
         break;
     default: {
         actor *who = &actors[s->decide(s->context, ACTORS)];
@@ -104,6 +108,8 @@ static interleaving play(stage *s, bool (*goes_on)(void *context))
     fake_now_us = 1000000;
     const bool auth = s->decide(s->context, 2);
     ASSERT(actors && fake_service_init(&shared, 0, FORESTS_MOST, auth));
+    shared.options.resume_grace_us = GRACE_US;
+    shared.options.quiet_us = QUIET_US;
     while (!s->seen.broken && goes_on(s->context)) {
         decide_once(s, actors);
     }
@@ -115,6 +121,8 @@ static interleaving play(stage *s, bool (*goes_on)(void *context))
     }
     while (stage_work(s)) {
     }
+    fake_now_us += GRACE_US; /* nobody comes back */
+    upkeep_do(&shared, fake_now_us);
     stage_expect(s, shared.counters.sessions == 0, "a session is left behind");
     stage_expect(s, shared.uploads.used == 0, "bytes of an upload are left behind");
     for (const resident *r = shared.forests.first; r; r = r->next) {

@@ -79,6 +79,9 @@ static void see_answer(actor *who, open_request *asked, const proto_message *mes
         who->mine = who->attaching;
     } else if (message->type == PROTO_WELCOME) {
         memcpy(who->server_nonce, message->as.welcome.nonce, sizeof who->server_nonce);
+        memcpy(who->token, message->as.welcome.session, sizeof who->token);
+    } else if (message->type == PROTO_RESUME_REPLY && message->as.resume_reply.forests.count > 0) {
+        who->mine = (struct proto_create_reply){.forest = message->as.resume_reply.forests.items[0].forest};
     } else if (message->type == PROTO_SUBSCRIBE_REPLY && sub) {
         sub->handle = message->as.subscribe_reply.subscription;
     }
@@ -104,7 +107,9 @@ static void see(actor *who, const proto_message *message)
         s->seen.hash = hash_u64(hash_u64(s->seen.hash, message->as.frame.sequence), message->as.frame.glb.length);
         see_frame(who, sub, &message->as.frame);
     } else {
-        stage_expect(s, who->garbled || message->type == PROTO_BYE || message->type == PROTO_PING,
+        stage_expect(s,
+                     who->garbled || message->type == PROTO_BYE || message->type == PROTO_PING ||
+                         (asked && message->type == PROTO_PROGRESS),
                      "an answer came to what was not asked, or twice");
     }
 }
@@ -155,6 +160,7 @@ void actor_cut(actor *who)
 {
     if (who->there) {
         who->on->seen.cuts++;
+        memcpy(who->on->token, who->token, sizeof who->token);
         session_fini(&who->talk);
         input_fini(&who->in);
         free(who->wire);
@@ -295,6 +301,14 @@ static void say_auth(actor *who)
     put(who, &message, true);
 }
 
+/* The session that was cut off last. */
+static void say_resume(actor *who)
+{
+    proto_message message = {.type = PROTO_RESUME};
+    memcpy(message.as.resume.session, who->on->token, sizeof who->on->token);
+    put(who, &message, true);
+}
+
 static void say_create(actor *who)
 {
     proto_message message = fake_create(decide(who, 3));
@@ -346,15 +360,16 @@ static int64_t some_time_us(actor *who)
 
 static void say_motion(actor *who)
 {
-    const uint32_t sequence = ++who->on->motions;
-    proto_message message = fake_motion(some_forest(who)->forest, sequence, some_time_us(who));
+    const int64_t time_us = some_time_us(who);
+    proto_message message = fake_motion(some_forest(who)->forest, ++who->on->motions, time_us);
     message.as.motion.teleport = (uint8_t)(decide(who, 8) == 0);
     put(who, &message, false);
 }
 
 static void say_query(actor *who)
 {
-    proto_message message = fake_query(some_forest(who)->forest, some_time_us(who));
+    const int64_t time_us = some_time_us(who);
+    proto_message message = fake_query(some_forest(who)->forest, time_us);
     message.as.query.latest = (uint8_t)decide(who, 2);
     message.as.query.kind = (uint8_t)decide(who, 5);
     message.as.query.level = (uint8_t)(decide(who, 4) == 0);
@@ -422,8 +437,8 @@ static void say_of_forest(actor *who)
         message.type = PROTO_SET_PARAMS;
         message.as.set_params.forest = forest;
         message.as.set_params.params.count = 1;
-        message.as.set_params.params.items[0] =
-            (struct proto_param){proto_str_of(decide(who, 4) ? "wind_x" : "windy"), (float)decide(who, 5)};
+        message.as.set_params.params.items[0].name = proto_str_of(decide(who, 4) ? "wind_x" : "windy");
+        message.as.set_params.params.items[0].value = (float)decide(who, 5);
     }
     put(who, &message, message.type != PROTO_DETACH);
 }
@@ -474,7 +489,7 @@ void actor_say(actor *who)
     if (at_door && n < SAYINGS) { /* else hardly anyone would come in, */
         (who->talk.state == SESSION_GREETING ? say_hello : say_auth)(who);
     } else if (who->mine.forest == 0 && n < SAYINGS) { /* or have a forest, */
-        (n % 4 == 0 ? say_create : say_attach)(who);
+        (n % 4 == 0 ? say_create : n % 4 == 1 ? say_resume : say_attach)(who);
     } else if (who->subscription_count == 0 && n < SAYINGS / 4) { /* or look at it */
         say_subscribe(who);
     } else if (n < SAYINGS) {

@@ -22,7 +22,8 @@ typedef struct stage {
     struct proto_create_reply forests[STAGE_FORESTS];
     uint32_t forests_made;
     uint32_t motions;
-    int64_t time_us; /* that was asked for last */
+    uint8_t token[PARKING_TOKEN_SIZE]; /* of the session that was cut off last */
+    int64_t time_us;                   /* that was asked for last */
     interleaving seen;
 } stage;
 
@@ -49,7 +50,7 @@ typedef struct actor {
     size_t wire_size;
     uint64_t last_request;
     struct proto_create_reply mine, attaching; /* the forest that it opened last, and the one it asked to open last */
-    uint8_t server_nonce[AUTH_NONCE_SIZE];
+    uint8_t server_nonce[AUTH_NONCE_SIZE], token[PARKING_TOKEN_SIZE];
     open_request open[ACTOR_REQUESTS];
     begun_subscription subscriptions[ACTOR_SUBSCRIPTIONS];
     uint32_t subscription_count;

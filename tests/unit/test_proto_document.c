@@ -166,6 +166,7 @@ static void example_welcome(proto_message *m)
     m->as.welcome.auth_required = 1;
     count_up(m->as.welcome.nonce, 32, 0x20);
     m->as.welcome.greatest_payload = PROTO_MAX_REQUEST;
+    count_up(m->as.welcome.session, 16, 0x80);
     m->as.welcome.server = proto_str_of("awtd 0.1.0");
 }
 

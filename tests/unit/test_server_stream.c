@@ -115,11 +115,11 @@ TEST(server_stream_keeps_to_the_rate_asked_for)
     fake_now_us += 10000;
     advance(&s.shared, s.driver, s.forest, &s.time_us, 1);
     CHECK(fake_receive(s.viewer) == NULL);
-    CHECK_INT(session_stream_due(&s.viewer->talk), fake_now_us + 10000);
+    CHECK_INT(session_due_us(&s.viewer->talk), fake_now_us + 10000);
     fake_now_us += 10000;
     advance(&s.shared, s.driver, s.forest, &s.time_us, 1);
     expect_frame(s.viewer, 4, 1);
-    CHECK(session_stream_due(&s.viewer->talk) == INT64_MAX);
+    CHECK(session_due_us(&s.viewer->talk) == INT64_MAX);
     scene_fini(&s);
 }
 

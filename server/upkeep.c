@@ -1,0 +1,47 @@
+/* upkeep.c: see upkeep.h. */
+#include "upkeep.h"
+#include "log.h"
+#include "making.h"
+
+#include <string.h>
+
+static int64_t least(int64_t a, int64_t b)
+{
+    return a < b ? a : b;
+}
+
+int64_t upkeep_due_us(const service *shared)
+{
+    return least(least(making_due_us(shared), parking_due_us(&shared->parked)), shared->forests_due_us);
+}
+
+static void end_forest(service *shared, resident *r)
+{
+    char quoted[LOG_QUOTED];
+    log_write(LOG_INFO, "forest ended", "name=%s why=\"nobody has had it open for long\"",
+              log_quote(r->name, strlen(r->name), quoted));
+    forest_inputs_free(registry_destroy(&shared->forests, r)); /* whoever waited for it is gone */
+}
+
+/* Forests are looked at so often that each ends not much later than it should. */
+static void end_left_forests(service *shared, int64_t now_us)
+{
+    const int64_t grace_us = shared->options.forest_grace_us;
+    if (now_us < shared->forests_due_us) {
+        return;
+    }
+    shared->forests_due_us = now_us + LIMIT_FOREST_LOOK_US;
+    for (resident *r = shared->forests.first, *next; r; r = next) {
+        next = r->next;
+        if (r->ready && !r->doomed && r->holders == 0 && now_us - r->left_us >= grace_us) {
+            end_forest(shared, r);
+        }
+    }
+}
+
+void upkeep_do(service *shared, int64_t now_us)
+{
+    making_tell(shared, now_us);
+    parking_expire(&shared->parked, &shared->forests, now_us);
+    end_left_forests(shared, now_us);
+}
