@@ -3,6 +3,7 @@
  * The file comes into being whole: it is written under a temporary name and linked to its own, which fails where
  * another daemon was faster; then that one's token is read like any other. */
 #include "token.h"
+#include "disk.h"
 #include "limits.h"
 #include "random.h"
 
@@ -39,19 +40,6 @@ bool token_make_directory(const char *directory, char *error, size_t error_size)
     return true;
 }
 
-static bool write_all(int fd, const char *bytes, size_t size)
-{
-    size_t done = 0;
-    while (done < size) {
-        ssize_t wrote = write(fd, bytes + done, size - done);
-        if (wrote < 0 && errno != EINTR) {
-            return false;
-        }
-        done += wrote > 0 ? (size_t)wrote : 0;
-    }
-    return true;
-}
-
 /* Writes a new token under `temporary`, which must not exist. */
 static bool write_token(const char *temporary)
 {
@@ -67,7 +55,7 @@ static bool write_token(const char *temporary)
         return false;
     }
     /* fchmod: a umask may have taken rights from the owner too */
-    bool written = fchmod(fd, TOKEN_FILE_MODE) == 0 && write_all(fd, text, AUTH_TOKEN_TEXT) && fsync(fd) == 0;
+    bool written = fchmod(fd, TOKEN_FILE_MODE) == 0 && disk_write(fd, text, AUTH_TOKEN_TEXT);
     int reason = errno;
     if (close(fd) != 0 || !written) {
         unlink(temporary);

@@ -1,0 +1,270 @@
+/* test_server_vault.c: files of the state directory: whole or not at all, whoever may be in the way. */
+#include "check.h"
+#include "keeper.h"
+#include "log.h"
+#include "saved.h"
+#include "vault.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* A state directory of the test's own; removed with what is in it by remove_state. */
+static void make_state(char path[64])
+{
+    snprintf(path, 64, "/tmp/awtd-vault-XXXXXX");
+    CHECK(mkdtemp(path) != NULL);
+}
+
+static void remove_state(const char *path)
+{
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf '%s'", path);
+    CHECK_INT(system(command), 0);
+}
+
+static bool open_vault(vault *v, const char *state)
+{
+    char error[256] = "";
+    bool opened = vault_open(v, state, error, sizeof error);
+    CHECK_TEXT(error, "");
+    return opened;
+}
+
+typedef struct counted {
+    uint32_t count;
+    uint64_t sum;
+} counted;
+
+static bool count_file(void *context, uint64_t handle)
+{
+    counted *c = context;
+    c->count++;
+    c->sum += handle;
+    return true;
+}
+
+static counted count_files(const vault *v)
+{
+    counted c = {0};
+    CHECK(vault_list(v, count_file, &c));
+    return c;
+}
+
+TEST(vault_files_are_read_as_they_were_written_and_replaced)
+{
+    char state[64];
+    vault v;
+    size_t size = 0;
+    make_state(state);
+    CHECK(open_vault(&v, state));
+    CHECK(vault_write(&v, 0x100000001, "first", 5) && vault_write(&v, 7, "other", 5));
+    CHECK(vault_write(&v, 0x100000001, "second one", 10));
+    unsigned char *bytes = vault_read(&v, 0x100000001, &size);
+    CHECK_U64(size, 10);
+    CHECK_BYTES(bytes, "second one", 10);
+    free(bytes);
+    counted c = count_files(&v);
+    CHECK_INT(c.count, 2);
+    CHECK_U64(c.sum, 0x100000008);
+    CHECK(vault_remove(&v, 7) && vault_remove(&v, 7));
+    vault_set_aside(&v, 0x100000001);
+    CHECK_INT(count_files(&v).count, 0);
+    CHECK(!vault_read(&v, 7, &size));
+    CHECK_INT(errno, ENOENT);
+    remove_state(state);
+}
+
+TEST(vault_removes_what_was_half_written_and_passes_over_strangers)
+{
+    char state[64], path[LIMIT_PATH + 64];
+    vault v;
+    make_state(state);
+    CHECK(open_vault(&v, state) && vault_write(&v, 5, "whole", 5));
+    static const char *const others[] = {"0000000000000006.part", "notes.txt", "zz00000000000007.forest", "8.forest"};
+    for (int i = 0; i < 4; i++) {
+        snprintf(path, sizeof path, "%s/%s", v.folder, others[i]);
+        close(open(path, O_WRONLY | O_CREAT, 0600));
+    }
+    CHECK(open_vault(&v, state));
+    counted c = count_files(&v);
+    CHECK_INT(c.count, 1);
+    CHECK_U64(c.sum, 5);
+    snprintf(path, sizeof path, "%s/%s", v.folder, others[0]);
+    CHECK(access(path, F_OK) != 0);
+    snprintf(path, sizeof path, "%s/%s", v.folder, others[1]);
+    CHECK(access(path, F_OK) == 0); /* not ours to remove */
+    remove_state(state);
+}
+
+TEST(vault_that_cannot_be_made_says_so)
+{
+    char state[64], error[256] = "";
+    vault v;
+    make_state(state);
+    char path[96];
+    snprintf(path, sizeof path, "%s/forests", state);
+    close(open(path, O_WRONLY | O_CREAT, 0600)); /* a file stands where the folder should */
+    CHECK(!vault_open(&v, state, error, sizeof error));
+    CHECK(strstr(error, "/forests cannot be") != NULL);
+    remove_state(state);
+}
+
+TEST(vault_keeps_the_old_file_where_the_new_one_cannot_be_written)
+{
+    char state[64], beside[LIMIT_PATH + 64];
+    vault v;
+    size_t size = 0;
+    make_state(state);
+    CHECK(open_vault(&v, state) && vault_write(&v, 5, "old", 3));
+    snprintf(beside, sizeof beside, "%s/0000000000000005.part", v.folder);
+    CHECK_INT(mkdir(beside, 0700), 0); /* nothing can be written there */
+    CHECK(!vault_write(&v, 5, "new", 3));
+    unsigned char *bytes = vault_read(&v, 5, &size);
+    CHECK_BYTES(bytes, "old", 3);
+    free(bytes);
+    remove_state(state);
+}
+
+/* ---- the keeper -------------------------------------------------------------------------------------------------- */
+
+static int64_t no_time_us(void)
+{
+    return 1;
+}
+
+static unsigned char *heap_copy(const char *text)
+{
+    unsigned char *bytes = malloc(strlen(text));
+    CHECK(bytes != NULL);
+    memcpy(bytes, text, strlen(text));
+    return bytes;
+}
+
+TEST(keeper_writes_the_newest_of_each_forest_and_removes)
+{
+    char state[64], text[32];
+    vault v;
+    size_t size = 0;
+    make_state(state);
+    CHECK(open_vault(&v, state));
+    keeper *k = keeper_create(&v, no_time_us);
+    CHECK(k != NULL);
+    for (int i = 0; i < 100; i++) {
+        snprintf(text, sizeof text, "number %02d", i);
+        CHECK(keeper_write(k, 1 + (uint64_t)i % 3, heap_copy(text), strlen(text)));
+    }
+    keeper_remove(k, 2);
+    CHECK(keeper_drain(k));
+    CHECK_INT(count_files(&v).count, 2);
+    unsigned char *bytes = vault_read(&v, 1, &size);
+    CHECK_BYTES(bytes, "number 99", 9);
+    free(bytes);
+    keeper_counts counts = keeper_count(k);
+    CHECK(counts.written >= 2 && counts.failed == 0 && counts.refused == 0 && counts.waiting == 0);
+    CHECK(keeper_write(k, 9, heap_copy("last"), 4));
+    keeper_destroy(k); /* writes what waits first */
+    bytes = vault_read(&v, 9, &size);
+    CHECK_BYTES(bytes, "last", 4);
+    free(bytes);
+    remove_state(state);
+}
+
+TEST(keeper_reports_what_could_not_be_written_and_goes_on)
+{
+    char state[64], beside[LIMIT_PATH + 64];
+    vault v;
+    make_state(state);
+    log_set_level(LOG_ERROR);
+    CHECK(open_vault(&v, state));
+    snprintf(beside, sizeof beside, "%s/0000000000000005.part", v.folder);
+    CHECK_INT(mkdir(beside, 0700), 0);
+    keeper *k = keeper_create(&v, no_time_us);
+    CHECK(keeper_write(k, 5, heap_copy("five"), 4) && keeper_write(k, 6, heap_copy("six"), 3));
+    CHECK(!keeper_drain(k));
+    CHECK_U64(keeper_count(k).failed, 1);
+    CHECK_U64(keeper_count(k).written, 1);
+    CHECK(keeper_drain(k)); /* said once */
+    keeper_destroy(k);
+    remove_state(state);
+}
+
+TEST(keeper_refuses_more_than_may_wait)
+{
+    char state[64];
+    vault v;
+    make_state(state);
+    CHECK(open_vault(&v, state));
+    keeper *k = keeper_create(&v, no_time_us);
+    CHECK(!keeper_write(k, 5, heap_copy("x"), (size_t)LIMIT_KEEPER_BYTES + 1)); /* judged by its size alone */
+    CHECK_U64(keeper_count(k).refused, 1);
+    CHECK(keeper_drain(k));
+    keeper_destroy(k);
+    CHECK_INT(count_files(&v).count, 0);
+    remove_state(state);
+}
+
+/* ---- saved forests ----------------------------------------------------------------------------------------------- */
+
+static saved example(void)
+{
+    saved s = {.handle = 0x300000002, .name = "long", .sequence = 77, .motion_epoch = 2, .motion_sequence = 9};
+    s.motion_us = -5;
+    s.moved = true;
+    s.hash = 0x1234567890abcdef;
+    s.state = "state";
+    s.state_size = 5;
+    memset(s.drive_token, 0xd1, sizeof s.drive_token);
+    memset(s.view_token, 0xe2, sizeof s.view_token);
+    return s;
+}
+
+TEST(saved_forest_is_read_as_it_was_written)
+{
+    const saved s = example();
+    const size_t size = saved_size(&s);
+    unsigned char *bytes = malloc(size);
+    saved again;
+    CHECK(bytes != NULL);
+    saved_write(&s, bytes);
+    CHECK_INT(saved_read(bytes, size, &again, NULL), AWT_OK);
+    CHECK_U64(again.handle, s.handle);
+    CHECK_TEXT(again.name, s.name);
+    CHECK_U64(again.sequence, s.sequence);
+    CHECK_INT(again.motion_epoch, s.motion_epoch);
+    CHECK_INT(again.motion_sequence, s.motion_sequence);
+    CHECK_INT(again.motion_us, s.motion_us);
+    CHECK(again.moved);
+    CHECK_U64(again.hash, s.hash);
+    CHECK_BYTES(again.drive_token, s.drive_token, sizeof s.drive_token);
+    CHECK_BYTES(again.view_token, s.view_token, sizeof s.view_token);
+    CHECK_U64(again.state_size, 5);
+    CHECK_BYTES(again.state, "state", 5);
+    free(bytes);
+}
+
+TEST(saved_forest_that_is_cut_or_damaged_is_refused)
+{
+    const saved s = example();
+    const size_t size = saved_size(&s);
+    unsigned char *bytes = malloc(size);
+    saved again;
+    CHECK(bytes != NULL);
+    saved_write(&s, bytes);
+    for (size_t cut = 0; cut < size; cut++) {
+        unsigned char *exact = malloc(cut ? cut : 1);
+        memcpy(exact, bytes, cut);
+        CHECK(saved_read(exact, cut, &again, NULL) != AWT_OK);
+        free(exact);
+    }
+    for (size_t at = 0; at < size; at++) {
+        bytes[at] ^= 0x40;
+        CHECK(saved_read(bytes, size, &again, NULL) != AWT_OK);
+        bytes[at] ^= 0x40;
+    }
+    free(bytes);
+}
