@@ -64,6 +64,7 @@ enum {
 #define LIMIT_WRITE_STALL_US INT64_C(30000000) /* a peer that takes nothing for so long is let go */
 #define LIMIT_FOREST_LOOK_US INT64_C(1000000)  /* from one look for forests that nobody has open to the next */
 #define LIMIT_LINGER_US INT64_C(1000000)       /* after the last byte out, for the peer to close first */
+#define LIMIT_STEP_US INT64_C(10000)           /* a request for a step or a look is late after that */
 #define LIMIT_PROGRESS_US INT64_C(100000)      /* from one PROGRESS to the next */
 #define LIMIT_ACCEPT_PAUSE_US INT64_C(100000)  /* no accept for so long when descriptors have run out */
 #define LIMIT_STOP_FLUSH_US INT64_C(2000000)   /* after SIGTERM, for what is still unsent */

@@ -82,6 +82,8 @@ static void submit(registry *reg, resident *r)
 {
     r->busy = true;
     r->work.job.run = forest_work_run;
+    r->work.job.class = r->work.making ? JOB_LONG : JOB_STEP;
+    r->work.job.deadline_us = r->work.submitted_us + LIMIT_STEP_US;
     r->work.handle = r->handle;
     r->work.sequence = r->sequence;
     if (!r->work.spare) { /* a job that failed has left its own */

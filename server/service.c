@@ -14,7 +14,11 @@ bool service_init(service *s, const service_options *options)
     if (!s->has_lock) {
         return false;
     }
-    s->pool = worker_pool_create(options->workers, options->wake, options->wake_context);
+    s->pool = worker_pool_create(&(worker_pool_def){.workers = options->workers,
+                                                    .greatest = options->max_forests,
+                                                    .clock_us = options->clock_us,
+                                                    .wake = options->wake,
+                                                    .context = options->wake_context});
     if (s->pool && registry_init(&s->forests, options->max_forests, s->pool, subscriptions_wish) &&
         handle_table_init(&s->sessions, options->max_sessions)) {
         return true;
