@@ -2,6 +2,7 @@
 #include "completions.h"
 #include "convert.h"
 #include "log.h"
+#include "metrics.h"
 #include "session.h"
 
 #include <string.h>
@@ -89,6 +90,7 @@ static bool accept_created(service *shared, resident *r, session *asker)
         log_write(LOG_INFO, "forest created", "peer=%s name=%s strands=%lu nodes=%lu build_us=%lu", asker->peer, quoted,
                   (unsigned long)r->work.info.strand_count, (unsigned long)r->work.info.finest_nodes,
                   (unsigned long)r->work.build_us);
+        metrics_count(METRIC_FORESTS_MADE, 1);
         return true;
     }
     forest_inputs_free(registry_destroy(&shared->forests, r));
@@ -104,6 +106,7 @@ static bool take_picture(service *shared, resident *r)
         return false;
     }
     shared->counters.frames_encoded += drawn->view_count;
+    metrics_count(METRIC_FRAMES_ENCODED, drawn->view_count);
     return registry_publish(r, drawn);
 }
 

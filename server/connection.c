@@ -2,6 +2,7 @@
 #include "connection.h"
 #include "input.h"
 #include "log.h"
+#include "metrics.h"
 #include "net.h"
 #include "output.h"
 #include "protocol.h"
@@ -83,6 +84,7 @@ connection *connection_create(service *shared, int fd, const char *peer)
     }
     c->fd = fd;
     c->opened_us = c->progress_us = now_us(c);
+    metrics_count(METRIC_CONNECTIONS_TAKEN, 1);
     log_write(LOG_DEBUG, "connection opened", "peer=%s", peer);
     return c;
 }
@@ -115,6 +117,7 @@ void connection_end(connection *c, const char *reason)
 
 void connection_refuse(connection *c, int code, const char *text)
 {
+    metrics_count(METRIC_CONNECTIONS_REFUSED, 1);
     session_error(&c->talk, 0, 0, code, "%s", text);
     c->talk.state = SESSION_CLOSING;
 }
@@ -209,6 +212,7 @@ static net_result receive(connection *c, size_t *got)
         return NET_FAILED;
     }
     net_result result = net_receive(c->fd, room, size, got);
+    metrics_count(METRIC_BYTES_RECEIVED, *got);
     if (result == NET_DONE && !is_discarding(c)) {
         input_came(&c->in, *got);
     }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "clock.h"
 #include "drawn_form.h"
+#include "metrics.h"
 
 #include <stdlib.h>
 
@@ -267,6 +268,7 @@ static awt_status draw_view(const drawing_job *j, view_name name)
     if (status != AWT_OK) {
         return status;
     }
+    const int64_t evaluated_us = clock_monotonic_us();
     base = kept && name.base != 0 ? drawn_form_find(&j->d->forms[name.form], name.base) : NULL;
     name.base = base ? name.base : 0;
     if (picture_view(j->out, name)) {
@@ -280,7 +282,10 @@ static awt_status draw_view(const drawing_job *j, view_name name)
     if (status != AWT_OK) {
         picture_drop(j->out);
     }
-    v->encode_us = clock_between_us(begun_us, clock_monotonic_us());
+    const int64_t ended_us = clock_monotonic_us();
+    v->encode_us = clock_between_us(begun_us, ended_us);
+    metrics_observe(METRIC_EVALUATE, clock_between_us(begun_us, evaluated_us));
+    metrics_observe(METRIC_ENCODE, clock_between_us(evaluated_us, ended_us));
     return status;
 }
 

@@ -2,6 +2,7 @@
 #include "forest_work.h"
 #include "base/error.h"
 #include "clock.h"
+#include "metrics.h"
 
 #include <stddef.h>
 #include <stdlib.h>
@@ -59,6 +60,7 @@ static awt_status make_groom(forest_work *w, const awt_strands *strands, awt_err
     }
     awt_hierarchy_fini(&hierarchy);
     w->build_us = clock_between_us(begun_us, clock_monotonic_us());
+    metrics_observe(METRIC_BUILD, w->build_us);
     w->skipped_strands = strands->skipped_count;
     w->rebuilt = status == AWT_OK ? awt_groom_rebuilt(w->groom) : (awt_rebuilt){0};
     return status;
@@ -126,10 +128,13 @@ static awt_status advance(forest_work *w, awt_error *error)
     int64_t ended_us = clock_monotonic_us();
     w->steps = step.steps;
     w->step_us = clock_between_us(begun_us, ended_us);
+    metrics_count(METRIC_STEPS, step.steps);
+    metrics_observe(METRIC_STEP, w->step_us);
     if (status != AWT_OK) {
         return status;
     }
     w->stepped = true;
+    w->asleep = step.asleep_trees == w->info.wisp_count[0];
     w->sequence++;
     w->stepped_us = ended_us;
     w->figures = (struct proto_frame){.forest = w->handle,
@@ -210,10 +215,8 @@ static void draw(forest_work *w, int64_t begun_us)
 
 /* ---- the job --------------------------------------------------------------------------------------------------- */
 
-void forest_work_run(job *work)
+static void run(forest_work *w, int64_t begun_us)
 {
-    forest_work *w = (forest_work *)(void *)((unsigned char *)work - offsetof(forest_work, job));
-    int64_t begun_us = clock_monotonic_us();
     awt_status status = AWT_OK;
     w->error = w->draw_error = (awt_error){0};
     w->steps = w->step_us = w->encode_us = 0;
@@ -229,6 +232,17 @@ void forest_work_run(job *work)
     if (status == AWT_OK || (!w->making && w->looks)) {
         draw(w, begun_us);
     }
+}
+
+void forest_work_run(job *work)
+{
+    forest_work *w = (forest_work *)(void *)((unsigned char *)work - offsetof(forest_work, job));
+    int64_t begun_us = clock_monotonic_us();
+    metrics_add(METRIC_JOBS_WAITING, -1);
+    metrics_add(METRIC_JOBS_RUNNING, 1);
+    metrics_observe(METRIC_QUEUE_WAIT, clock_between_us(w->submitted_us, begun_us));
+    run(w, begun_us);
+    metrics_add(METRIC_JOBS_RUNNING, -1);
 }
 
 /* ---- the end --------------------------------------------------------------------------------------------------- */

@@ -69,6 +69,7 @@ typedef struct forest_work {
 
     /* the result; completions.c takes it */
     bool stepped;         /* the forest was made or advanced */
+    bool asleep;          /* after its last step nothing of it moves */
     picture *drawn;       /* a reference; NULL: nothing was to be drawn, or `error` says why */
     picture *binding;     /* a reference, with the one view PICTURE_BINDING */
     awt_error error;      /* why the step failed, where it did */

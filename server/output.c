@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "clock.h"
 #include "limits.h"
+#include "metrics.h"
 
 #include <stdlib.h>
 
@@ -23,18 +24,24 @@ static size_t segment_blob(const output_segment *segment)
     return segment->shown ? segment->v->glb.size : 0;
 }
 
+static void change_unsent(output *out, size_t bytes, bool more)
+{
+    out->bytes = more ? out->bytes + bytes : out->bytes - bytes;
+    metrics_add(METRIC_UNSENT_BYTES, more ? (int64_t)bytes : -(int64_t)bytes);
+}
+
 static void append(output *out, output_segment *segment)
 {
     *(out->last ? &out->last->next : &out->first) = segment;
     out->last = segment;
     out->segments++;
-    out->bytes += segment->size + segment_blob(segment);
+    change_unsent(out, segment->size + segment_blob(segment), true);
 }
 
 static void remove_first(output *out)
 {
     output_segment *segment = out->first;
-    out->bytes -= segment->size + segment_blob(segment);
+    change_unsent(out, segment->size + segment_blob(segment), false);
     out->segments--;
     out->sent = 0;
     out->first = segment->next;
@@ -95,7 +102,7 @@ static void begin_frame(output *out, output_segment *segment, int64_t now_us)
     }
     segment->size = proto_encode_head(&message, segment->bytes, OUTPUT_FRAME_HEAD);
     ASSERT(segment->size > 0);
-    out->bytes += segment->size;
+    change_unsent(out, segment->size, true);
 }
 
 /* Adds what is left of the bytes behind `skip`, and lessens `skip` by what it passed. */
@@ -128,16 +135,25 @@ static size_t gather_segments(output *out, struct iovec pieces[LIMIT_OUTPUT_GATH
     return count;
 }
 
+static void count_frame(output *out, int64_t now_us)
+{
+    uint32_t took_us = clock_between_us(out->begun_us, now_us);
+    out->last_write_us = took_us ? took_us : 1; /* 0 says that there was none */
+    out->frames_sent++;
+    metrics_count(METRIC_FRAMES_SENT, 1);
+    metrics_observe(METRIC_WRITE, took_us);
+    metrics_observe(METRIC_FRAME_AGE, clock_between_us(out->first->shown->stepped_us, now_us));
+}
+
 static void take_sent(output *out, size_t sent, int64_t now_us)
 {
     out->bytes_sent += sent;
     out->sent += sent;
+    metrics_count(METRIC_BYTES_SENT, sent);
     while (out->first && out->first->size > 0 && out->sent >= out->first->size + segment_blob(out->first)) {
         size_t rest = out->sent - out->first->size - segment_blob(out->first);
         if (out->first->shown && out->first->v->name.form != PICTURE_BINDING) {
-            uint32_t took_us = clock_between_us(out->begun_us, now_us);
-            out->last_write_us = took_us ? took_us : 1; /* 0 says that there was none */
-            out->frames_sent++;
+            count_frame(out, now_us);
         }
         remove_first(out);
         out->sent = rest;

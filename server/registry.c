@@ -3,6 +3,7 @@
 #include "base/assert.h"
 #include "base/error.h"
 #include "limits.h"
+#include "metrics.h"
 #include "random.h"
 
 #include <stddef.h>
@@ -22,6 +23,9 @@ static void resident_free(registry *reg, resident *r)
     *(r->previous ? &r->previous->next : &reg->first) = r->next;
     *(r->next ? &r->next->previous : &reg->last) = r->previous;
     reg->alive--;
+    metrics_add(METRIC_FORESTS, -1);
+    metrics_add(METRIC_FORESTS_ASLEEP, -(int64_t)r->asleep);
+    metrics_add(METRIC_HAIR_BYTES, -(int64_t)r->bytes);
     reg->telling -= r->tells;
     forest_inputs_free(r->waiting);
     forest_inputs_free(r->looks);
@@ -62,6 +66,7 @@ static resident *resident_create(registry *reg)
     *(reg->last ? &reg->last->next : &reg->first) = r;
     reg->last = r;
     reg->alive++;
+    metrics_add(METRIC_FORESTS, 1);
     return r;
 }
 
@@ -89,6 +94,7 @@ static void submit(registry *reg, resident *r)
     if (!r->work.spare) { /* a job that failed has left its own */
         r->work.spare = take_spare(r);
     }
+    metrics_add(METRIC_JOBS_WAITING, 1);
     worker_pool_submit(reg->pool, &r->work.job);
 }
 
@@ -287,7 +293,11 @@ resident *registry_take_back(job *done)
     size_t offset = offsetof(resident, work) + offsetof(forest_work, job);
     resident *r = (resident *)(void *)((unsigned char *)done - offset);
     ASSERT(r->busy);
-    r->bytes = forest_work_bytes(&r->work);
+    uint64_t bytes = forest_work_bytes(&r->work);
+    metrics_add(METRIC_HAIR_BYTES, (int64_t)(bytes - r->bytes));
+    metrics_add(METRIC_FORESTS_ASLEEP, (int64_t)r->work.asleep - (int64_t)r->asleep);
+    r->bytes = bytes;
+    r->asleep = r->work.asleep;
     for (int i = 0; i < FORM_COUNT && r->work.draws; i++) {
         r->form_bytes[i] = drawing_form_bytes(r->work.draws, i);
     }

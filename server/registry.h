@@ -57,6 +57,7 @@ typedef struct resident {
     uint32_t subscription_count;
     awt_groom_info info;
     uint64_t bytes;                  /* that it holds, when it was last idle */
+    bool asleep;                     /* it was then */
     uint64_t form_bytes[FORM_COUNT]; /* of these, what each form takes; it never grows less */
 
     forest_work work;

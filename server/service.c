@@ -2,6 +2,7 @@
 #include "service.h"
 #include "base/assert.h"
 #include "limits.h"
+#include "metrics.h"
 #include "subscription.h"
 
 bool service_init(service *s, const service_options *options)
@@ -21,6 +22,7 @@ bool service_init(service *s, const service_options *options)
                                                     .context = options->wake_context});
     if (s->pool && registry_init(&s->forests, options->max_forests, s->pool, subscriptions_wish) &&
         handle_table_init(&s->sessions, options->max_sessions)) {
+        metrics_set(METRIC_WORKERS, options->workers);
         return true;
     }
     service_fini(s);

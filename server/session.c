@@ -1,6 +1,7 @@
 /* session.c: see session.h. */
 #include "session.h"
 #include "log.h"
+#include "metrics.h"
 #include "status.h"
 
 #include <stdarg.h>
@@ -18,6 +19,7 @@ bool session_init(session *s, service *shared, const session_sink *sink, const c
     }
     snprintf(s->peer, sizeof s->peer, "%s", peer);
     shared->counters.sessions++;
+    metrics_add(METRIC_CONNECTIONS, 1);
     return true;
 }
 
@@ -55,6 +57,7 @@ void session_fini(session *s)
     leave_holdings(s);
     handle_remove(&s->shared->sessions, s->handle);
     s->shared->counters.sessions--;
+    metrics_add(METRIC_CONNECTIONS, -1);
     *s = (session){0};
 }
 
@@ -81,6 +84,7 @@ static void send_error(session *s, uint16_t about, uint64_t request, int code, c
     message.as.error.about = about;
     message.as.error.text = proto_str_of(text);
     s->shared->counters.errors_sent++;
+    metrics_count_error(code);
     session_send(s, &message);
     if (proto_error_closes(code)) {
         s->state = SESSION_CLOSING;

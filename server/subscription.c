@@ -1,5 +1,6 @@
 /* subscription.c: see subscription.h. */
 #include "subscription.h"
+#include "metrics.h"
 #include "base/assert.h"
 
 void subscription_begin(subscription *s, struct session *session, resident *forest, const subscription_def *def)
@@ -17,6 +18,7 @@ void subscription_begin(subscription *s, struct session *session, resident *fore
                         .budget = def->budget};
     forest->subscriptions = s;
     forest->subscription_count++;
+    metrics_add(METRIC_SUBSCRIPTIONS, 1);
 }
 
 void subscription_end(subscription *s)
@@ -27,6 +29,7 @@ void subscription_end(subscription *s)
     }
     *link = s->next_of_forest;
     s->forest->subscription_count--;
+    metrics_add(METRIC_SUBSCRIPTIONS, -1);
     picture_release(s->waiting);
     *s = (subscription){0};
 }
@@ -132,7 +135,9 @@ void subscriptions_offer(resident *forest, picture *offered)
         if (offered->earlier && !again) {
             continue;
         }
-        s->skipped += s->waiting && !again;
+        const bool skips = s->waiting && !again;
+        s->skipped += skips;
+        metrics_count(METRIC_FRAMES_SKIPPED, skips);
         picture_release(s->waiting);
         s->waiting = picture_hold(offered);
     }
