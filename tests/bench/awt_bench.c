@@ -13,6 +13,7 @@ static const struct {
 } SUBCOMMANDS[] = {
     {"paper", bench_paper, "the table of the paper's §5.2: single level against AWT, for the four styles"},
     {"encode", bench_encode, "frames: encoding, decoding and size, beside stock libdraco"},
+    {"capacity", bench_capacity, "what a head of hair costs a core, part by part, and how many heads a core holds"},
     {"soak", bench_soak, "minutes of the most violent motion, checked: no NaN, no growth, rest at the end"},
 };
 

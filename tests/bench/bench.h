@@ -14,6 +14,7 @@ enum { BENCH_MAX_WORKERS = 64 };
 int bench_paper(int argc, char *const *argv);
 int bench_encode(int argc, char *const *argv);
 int bench_soak(int argc, char *const *argv);
+int bench_capacity(int argc, char *const *argv);
 
 /* Takes the command line, as options_parse does. False: there is nothing to run; what there is to say has been said,
  * and *code is the exit code. */

@@ -165,3 +165,61 @@ TEST(bench_writes_what_frames_cost_as_json)
     CHECK_INT(run_bench("encode", "--motion /no/such/motion.bvh"), 2);
     CHECK_INT(run_bench("encode", "--groom /no/such/hair.tfx"), 1);
 }
+
+/* A style's heads, by what its steps and its frames (strands, guides: the last ones) cost; each has two viewers. */
+static void check_heads(const json_document *json, uint32_t row)
+{
+    uint32_t frames = json_member(json, row, "frames"), frame = frames + 1,
+             heads = json_member(json, row, "heads_per_core");
+    CHECK_INT(json_items(json, frames), 6);
+    CHECK_INT(json_items(json, json_member(json, row, "guides")), 4);
+    CHECK_INT(json_items(json, heads), 3);
+    for (int i = 0; i < 5 && json_items(json, frames) == 6; i++) {
+        frame = json->tokens[frame].after;
+    }
+    const double awake = number_at(json, row, "step_awake_ms"), asleep = number_at(json, row, "step_asleep_ms");
+    const double still = number_at(json, frame, "encode_still_ms") + 2 * number_at(json, frame, "write_ms");
+    const double moving = number_at(json, frame, "encode_moving_ms") + 2 * number_at(json, frame, "write_ms") +
+                          number_at(json, frame, "evaluate_ms") + number_at(json, row, "sections_ms");
+    CHECK(asleep > 0 && awake > asleep && number_at(json, frame, "bytes") > 1000);
+    CHECK_NEAR(number_at(json, row, "moving_ms_a_second"), 100 * awake + 60 * moving, 1e-9);
+    CHECK_NEAR(number_at(json, row, "still_ms_a_second"), 100 * asleep + 60 * still, 1e-9);
+    const double second[3] = {100 * asleep + 60 * still,
+                              0.1 * (100 * awake + 60 * moving) + 0.9 * (100 * asleep + 60 * still),
+                              100 * awake + 60 * moving};
+    for (uint32_t k = 0, item = heads + 1; k < 3 && json_items(json, heads) == 3;
+         k++, item = json->tokens[item].after) {
+        double count = 0;
+        CHECK(json_real(json, item, &count));
+        CHECK_NEAR(count * second[k], 1000, 1e-6);
+    }
+}
+
+TEST(bench_writes_what_heads_cost_as_json)
+{
+    char path[300], arguments[400];
+    if (!bench_is_built()) {
+        return;
+    }
+    snprintf(path, sizeof path, "%s/bench-capacity.json", check_build_directory());
+    snprintf(arguments, sizeof arguments, "--strands 300 --frames 1 --level guides --viewers 2 --json '%s'", path);
+    CHECK_INT(run_bench("capacity", arguments), 0);
+    size_t size;
+    char *text = (char *)check_read_file(path, &size);
+    json_document json = {0};
+    CHECK(text != NULL);
+    if (text && json_read(text, size, &json, NULL) == AWT_OK) {
+        const uint32_t styles = json_member(&json, 0, "styles");
+        CHECK_INT(json_items(&json, styles), 4);
+        for (uint32_t i = 0, row = styles + 1; i < json_items(&json, styles); i++, row = json.tokens[row].after) {
+            check_heads(&json, row);
+        }
+    } else {
+        CHECK(json.count > 0); /* it is no JSON */
+    }
+    json_fini(&json);
+    free(text);
+    remove(path);
+    CHECK_INT(run_bench("capacity", "--kind wool"), 2);
+    CHECK_INT(run_bench("capacity", "--level deep"), 2);
+}
