@@ -1,38 +1,16 @@
-/* awtclient.h: talking to awtd from C. The codec (bytes in, messages out) is in codec.h and knows no socket;
- * the one file with a socket is socket.c; here both meet in a connection that sends requests and waits for answers. */
+/* awtclient.h: talking to awtd from C by calls that wait: a link (awtlink.h, which holds options and errors, and is for
+ * callers that cannot wait), and a poll until what is wanted has come. The codec (bytes in, messages out) is in codec.h
+ * and knows no socket; the one file with a socket is socket.c. */
 #ifndef AWTCLIENT_H
 #define AWTCLIENT_H
 
-#include "proto.h"
+#include "awtlink.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 typedef struct awtclient awtclient;
-
-typedef struct awtclient_error {
-    int code;   /* a PROTO_ERROR_ code that the daemon sent, or one of awtclient_failure (negative) */
-    bool retry; /* the daemon said that trying again may help */
-    uint32_t retry_after_ms;
-    char text[256]; /* what went wrong and what to do about it, for people */
-} awtclient_error;
-
-enum awtclient_failure {
-    AWTCLIENT_ADDRESS = -1, /* the address does not resolve or nobody listens there */
-    AWTCLIENT_TOKEN = -2,   /* a token is wanted and none was found, or the daemon does not hold it */
-    AWTCLIENT_CLOSED = -3,  /* the connection ended */
-    AWTCLIENT_TIMEOUT = -4, /* no answer in time */
-    AWTCLIENT_PEER = -5,    /* the other end does not speak the protocol */
-    AWTCLIENT_MEMORY = -6
-};
-
-typedef struct awtclient_options {
-    const char *address;    /* "HOST:PORT" */
-    const char *token_file; /* NULL: where auth_token_path says; read only if the daemon wants a token */
-    const char *name;       /* for the daemon's log */
-    int timeout_ms;         /* of connecting and of each answer; 0: 30,000 */
-} awtclient_options;
 
 /* Connects, greets and authenticates. NULL: `error` says why. The caller owns the result: awtclient_close. */
 awtclient *awtclient_open(const awtclient_options *options, awtclient_error *error);
@@ -59,6 +37,8 @@ bool awtclient_upload(awtclient *client, uint32_t upload, const void *bytes, siz
 
 /* The descriptor, for tests and for callers that poll. */
 int awtclient_descriptor(const awtclient *client);
+/* The link below. Who uses it too takes from the same stream of messages; it stays the client's. */
+awtlink *awtclient_link(awtclient *client);
 
 #ifdef __cplusplus
 }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIRST_CAPACITY = 64 << 10 };
+enum { FIRST_CAPACITY = 4 << 10 };
 
 void awtcodec_init(awtcodec *codec)
 {
@@ -30,6 +30,14 @@ bool awtcodec_fail(awtclient_error *error, int code, const char *format, ...)
         va_start(arguments, format);
         vsnprintf(error->text, sizeof error->text, format, arguments);
         va_end(arguments);
+    }
+    return false;
+}
+
+bool awtcodec_pass(awtclient_error *error, const awtclient_error *from)
+{
+    if (error) {
+        *error = *from;
     }
     return false;
 }
@@ -106,19 +114,28 @@ static bool header_good(const awtcodec *codec, const proto_header *header, awtcl
     return true;
 }
 
+awtcodec_result awtcodec_ready(const awtcodec *codec, awtclient_error *error)
+{
+    if (codec->end - codec->start < PROTO_HEADER_SIZE) {
+        return AWTCODEC_MORE;
+    }
+    proto_header header = proto_header_read(codec->buffer + codec->start);
+    if (!header_good(codec, &header, error)) {
+        return AWTCODEC_BAD;
+    }
+    return codec->end - codec->start < needed(codec) ? AWTCODEC_MORE : AWTCODEC_MESSAGE;
+}
+
 awtcodec_result awtcodec_next(awtcodec *codec, proto_message *message, awtclient_error *error)
 {
-    while (codec->end - codec->start >= PROTO_HEADER_SIZE) {
+    for (;;) {
+        awtcodec_result ready = awtcodec_ready(codec, error);
+        if (ready != AWTCODEC_MESSAGE) {
+            return ready;
+        }
         const unsigned char *bytes = codec->buffer + codec->start;
         proto_header header = proto_header_read(bytes);
-        if (!header_good(codec, &header, error)) {
-            return AWTCODEC_BAD;
-        }
-        size_t size = needed(codec);
-        if (codec->end - codec->start < size) {
-            return AWTCODEC_MORE;
-        }
-        codec->start += size;
+        codec->start += needed(codec);
         if (!proto_type_known(header.type)) {
             continue;
         }
@@ -131,7 +148,6 @@ awtcodec_result awtcodec_next(awtcodec *codec, proto_message *message, awtclient
         }
         return AWTCODEC_MESSAGE;
     }
-    return AWTCODEC_MORE;
 }
 
 void awtcodec_hello(awtcodec *codec, const char *name, const uint8_t routing_key[AWTCODEC_KEY_SIZE], proto_message *out)

@@ -8,7 +8,7 @@
 #define AWTCLIENT_CODEC_H
 
 #include "auth.h"
-#include "awtclient.h"
+#include "awtlink.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -41,6 +41,8 @@ void awtcodec_fini(awtcodec *codec);
 
 /* Writes code and text into `error` unless it is NULL. Always false: what the failing function returns. */
 bool awtcodec_fail(awtclient_error *error, int code, const char *format, ...) AWTCODEC_FORMAT;
+/* Copies `from` into `error` unless that is NULL. Always false. */
+bool awtcodec_pass(awtclient_error *error, const awtclient_error *from);
 /* The same from an ERROR that came; `about` is the type of the message that the caller waits for an answer to. */
 bool awtcodec_fail_by(awtclient_error *error, const struct proto_error *from, uint16_t about);
 
@@ -57,6 +59,9 @@ typedef enum awtcodec_result {
     AWTCODEC_MORE,    /* more bytes are needed */
     AWTCODEC_BAD      /* this is not the protocol; the connection cannot go on */
 } awtcodec_result;
+
+/* Whether a whole message has come, AWTCODEC_MESSAGE, without taking it. */
+awtcodec_result awtcodec_ready(const awtcodec *codec, awtclient_error *error);
 
 /* The next whole message. Messages of a later version that need not be understood are skipped. */
 awtcodec_result awtcodec_next(awtcodec *codec, proto_message *message, awtclient_error *error);

@@ -1,7 +1,7 @@
 /* socket.c: the one file of the client library with a socket.
  *
- * The socket never blocks: every wait is a poll with what is left of the deadline, so that a peer who is slow, silent
- * or never stops costs the caller no more. SIGPIPE is not touched: MSG_NOSIGNAL asks for an error instead. */
+ * The socket never blocks: whoever wants to wait does so in socket_wait, by a poll with what is left of a deadline.
+ * SIGPIPE is not touched: MSG_NOSIGNAL asks for an error instead. */
 #include "socket.h"
 #include "codec.h"
 #include "base/options.h"
@@ -12,11 +12,21 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
-#include <sys/uio.h>
 #include <time.h>
 #include <unistd.h>
+
+#define LONGEST_WAIT_US INT64_C(3600000000) /* of one poll; whoever waits longer polls again */
+
+typedef struct socket_state {
+    struct addrinfo *places; /* where the address may be; NULL once connected */
+    const struct addrinfo *next;
+    int descriptor; /* -1: none */
+    int reason;     /* errno of the last place that did not take it */
+    char address[128];
+} socket_state;
 
 int64_t socket_now_us(void)
 {
@@ -25,15 +35,23 @@ int64_t socket_now_us(void)
     return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
 }
 
-int socket_left_ms(int64_t deadline_us)
+int64_t awtclient_now_us(void)
 {
-    int64_t left = deadline_us - socket_now_us();
-    return left > 0 ? (int)((left + 999) / 1000) : 0;
+    return socket_now_us();
 }
 
-/* Waits until the descriptor is ready for `events` (or has failed, which the next call on it will tell). */
-static bool wait_for(int descriptor, short events, int64_t deadline_us)
+int socket_left_ms(int64_t deadline_us)
 {
+    int64_t left_us = deadline_us - socket_now_us();
+    if (left_us <= 0) {
+        return 0;
+    }
+    return left_us < LONGEST_WAIT_US ? (int)((left_us + 999) / 1000) : (int)(LONGEST_WAIT_US / 1000);
+}
+
+bool socket_wait(int descriptor, unsigned wanted, int64_t deadline_us)
+{
+    short events = (short)((wanted & AWTLINK_READ ? POLLIN : 0) | (wanted & AWTLINK_WRITE ? POLLOUT : 0));
     for (;;) {
         struct pollfd entry = {.fd = descriptor, .events = events};
         int left = socket_left_ms(deadline_us);
@@ -47,26 +65,7 @@ static bool wait_for(int descriptor, short events, int64_t deadline_us)
     }
 }
 
-static bool connect_within(int descriptor, const struct addrinfo *place, int64_t deadline_us)
-{
-    if (connect(descriptor, place->ai_addr, place->ai_addrlen) == 0) {
-        return true;
-    }
-    if (errno != EINPROGRESS && errno != EINTR) {
-        return false;
-    }
-    if (!wait_for(descriptor, POLLOUT, deadline_us)) {
-        errno = ETIMEDOUT;
-        return false;
-    }
-    int failure = 0;
-    socklen_t size = sizeof failure;
-    if (getsockopt(descriptor, SOL_SOCKET, SO_ERROR, &failure, &size) != 0) {
-        return false;
-    }
-    errno = failure;
-    return failure == 0;
-}
+/* ---- connecting -------------------------------------------------------------------------------------- */
 
 static bool make_ready(int descriptor)
 {
@@ -77,105 +76,157 @@ static bool make_ready(int descriptor)
            setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes) == 0;
 }
 
-/* A connected descriptor, or -1 with the reason of the last place tried in errno. */
-static int connect_any(const struct addrinfo *places, int64_t deadline_us)
+static void drop_descriptor(socket_state *self)
 {
-    for (const struct addrinfo *place = places; place; place = place->ai_next) {
-        int descriptor = socket(place->ai_family, place->ai_socktype, place->ai_protocol);
-        if (descriptor < 0) {
-            continue;
-        }
-        if (make_ready(descriptor) && connect_within(descriptor, place, deadline_us)) {
-            return descriptor;
-        }
-        int failure = errno;
-        close(descriptor);
-        errno = failure;
+    if (self->descriptor >= 0) {
+        close(self->descriptor);
+        self->descriptor = -1;
     }
-    return -1;
 }
 
-int socket_open(const char *address, int64_t deadline_us, awtclient_error *error)
+static bool begin_at(socket_state *self, const struct addrinfo *place)
+{
+    self->descriptor = socket(place->ai_family, place->ai_socktype, place->ai_protocol);
+    if (self->descriptor >= 0 && make_ready(self->descriptor) &&
+        (connect(self->descriptor, place->ai_addr, place->ai_addrlen) == 0 || errno == EINPROGRESS || errno == EINTR)) {
+        return true;
+    }
+    self->reason = errno;
+    drop_descriptor(self);
+    return false;
+}
+
+/* Begins at the next place that does not refuse at once. False: there is none left. */
+static bool begin_next(socket_state *self, awtclient_error *error)
+{
+    while (self->next) {
+        const struct addrinfo *place = self->next;
+        self->next = place->ai_next;
+        if (begin_at(self, place)) {
+            return true;
+        }
+    }
+    return awtcodec_fail(error, AWTCLIENT_ADDRESS, "nobody answers at %.100s (%s): is awtd running there?",
+                         self->address, strerror(self->reason));
+}
+
+/* Positive: connected; else what send and receive are to answer. */
+static long connected(socket_state *self, awtclient_error *error)
+{
+    while (self->places) {
+        if (self->descriptor >= 0 && !socket_wait(self->descriptor, AWTLINK_WRITE, 0)) {
+            return AWTLINK_WANT_WRITE;
+        }
+        int failure = EBADF;
+        socklen_t size = sizeof failure;
+        if (self->descriptor >= 0 && getsockopt(self->descriptor, SOL_SOCKET, SO_ERROR, &failure, &size) == 0 &&
+            failure == 0) {
+            freeaddrinfo(self->places);
+            self->places = NULL;
+            break;
+        }
+        self->reason = failure;
+        drop_descriptor(self);
+        if (!begin_next(self, error)) {
+            return AWTLINK_FAILED;
+        }
+    }
+    return 1;
+}
+
+/* ---- the transport ----------------------------------------------------------------------------------- */
+
+static bool would_block(void)
+{
+    return errno == EAGAIN || errno == EWOULDBLOCK;
+}
+
+static long transport_send(void *context, const void *bytes, size_t size, awtclient_error *error)
+{
+    socket_state *self = context;
+    long state = connected(self, error);
+    while (state > 0) {
+        ssize_t sent = send(self->descriptor, bytes, size, MSG_NOSIGNAL);
+        if (sent > 0) {
+            return (long)sent;
+        }
+        if (sent == 0 || would_block()) {
+            return AWTLINK_WANT_WRITE;
+        }
+        if (errno != EINTR) {
+            return AWTLINK_FAILED;
+        }
+    }
+    return state;
+}
+
+static long transport_receive(void *context, void *bytes, size_t size, awtclient_error *error)
+{
+    socket_state *self = context;
+    long state = connected(self, error);
+    while (state > 0) {
+        ssize_t taken = recv(self->descriptor, bytes, size, 0);
+        if (taken >= 0) {
+            return (long)taken; /* 0 is AWTLINK_ENDED */
+        }
+        if (would_block()) {
+            return AWTLINK_WANT_READ;
+        }
+        if (errno != EINTR) {
+            return AWTLINK_FAILED;
+        }
+    }
+    return state;
+}
+
+static int transport_descriptor(void *context)
+{
+    return ((const socket_state *)context)->descriptor;
+}
+
+static void transport_close(void *context)
+{
+    socket_state *self = context;
+    drop_descriptor(self);
+    if (self->places) {
+        freeaddrinfo(self->places);
+    }
+    free(self);
+}
+
+static bool resolve(socket_state *self, const char *address, awtclient_error *error)
 {
     char host[256], port[32];
     if (!address || !options_split_address(address, host, sizeof host, port, sizeof port)) {
-        awtcodec_fail(error, AWTCLIENT_ADDRESS, "\"%.100s\" is not an address: HOST:PORT is wanted",
-                      address ? address : "");
-        return -1;
+        return awtcodec_fail(error, AWTCLIENT_ADDRESS, "\"%.100s\" is not an address: HOST:PORT is wanted",
+                             address ? address : "");
     }
     struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
-    struct addrinfo *places = NULL;
-    int failure = getaddrinfo(host[0] ? host : "localhost", port, &hints, &places);
+    int failure = getaddrinfo(host[0] ? host : "localhost", port, &hints, &self->places);
     if (failure != 0) {
-        awtcodec_fail(error, AWTCLIENT_ADDRESS, "%.100s cannot be found: %s", address, gai_strerror(failure));
-        return -1;
+        self->places = NULL;
+        return awtcodec_fail(error, AWTCLIENT_ADDRESS, "%.100s cannot be found: %s", address, gai_strerror(failure));
     }
-    int descriptor = connect_any(places, deadline_us);
-    int reason = errno;
-    freeaddrinfo(places);
-    if (descriptor < 0) {
-        awtcodec_fail(error, AWTCLIENT_ADDRESS, "nobody answers at %.100s (%s): is awtd running there?", address,
-                      strerror(reason));
-    }
-    return descriptor;
+    self->next = self->places;
+    proto_str_copy(proto_str_of(address), self->address, sizeof self->address);
+    return true;
 }
 
-void socket_close(int descriptor)
+bool socket_begin(const char *address, awtlink_transport *out, awtclient_error *error)
 {
-    if (descriptor >= 0) {
-        close(descriptor);
+    socket_state *self = calloc(1, sizeof *self);
+    if (!self) {
+        return awtcodec_fail(error, AWTCLIENT_MEMORY, "not enough memory");
     }
-}
-
-/* Takes `sent` bytes off the front of two pieces. */
-static void advance(struct iovec pieces[2], size_t sent)
-{
-    for (int i = 0; i < 2; i++) {
-        size_t part = sent < pieces[i].iov_len ? sent : pieces[i].iov_len;
-        if (part > 0) {
-            pieces[i].iov_base = (char *)pieces[i].iov_base + part;
-            pieces[i].iov_len -= part;
-            sent -= part;
-        }
+    self->descriptor = -1;
+    if (!resolve(self, address, error) || !begin_next(self, error)) {
+        transport_close(self);
+        return false;
     }
-}
-
-/* POSIX gives iovec no const; sendmsg only reads. */
-static struct iovec piece_of(proto_blob blob)
-{
-    return (struct iovec){.iov_base = blob.length > 0 ? (void *)(uintptr_t)blob.bytes : NULL, .iov_len = blob.length};
-}
-
-socket_result socket_send(int descriptor, proto_blob head, proto_blob tail, int64_t deadline_us)
-{
-    struct iovec pieces[2] = {piece_of(head), piece_of(tail)};
-    while (pieces[0].iov_len + pieces[1].iov_len > 0) {
-        struct msghdr header = {.msg_iov = pieces, .msg_iovlen = 2};
-        ssize_t sent = sendmsg(descriptor, &header, MSG_NOSIGNAL);
-        if (sent >= 0) {
-            advance(pieces, (size_t)sent);
-        } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
-            if (!wait_for(descriptor, POLLOUT, deadline_us)) {
-                return SOCKET_LATE;
-            }
-        } else if (errno != EINTR) {
-            return SOCKET_ENDED;
-        }
-    }
-    return SOCKET_DONE;
-}
-
-socket_result socket_receive(int descriptor, void *bytes, size_t size, size_t *got, int64_t deadline_us)
-{
-    while (wait_for(descriptor, POLLIN, deadline_us)) {
-        ssize_t taken = recv(descriptor, bytes, size, 0);
-        if (taken > 0) {
-            *got = (size_t)taken;
-            return SOCKET_DONE;
-        }
-        if (taken == 0 || (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)) {
-            return SOCKET_ENDED;
-        }
-    }
-    return SOCKET_LATE;
+    *out = (awtlink_transport){.context = self,
+                               .send = transport_send,
+                               .receive = transport_receive,
+                               .descriptor = transport_descriptor,
+                               .close = transport_close};
+    return true;
 }

@@ -1,26 +1,22 @@
-/* socket.h: a TCP connection whose every wait ends at a deadline. It knows no message. */
+/* socket.h: the one file of the client library with a socket: TCP as a transport of links, and waiting. */
 #ifndef AWTCLIENT_SOCKET_H
 #define AWTCLIENT_SOCKET_H
 
-#include "awtclient.h"
+#include "awtlink.h"
 
 /* Microseconds of the monotonic clock. */
 int64_t socket_now_us(void);
 /* Milliseconds until the deadline, rounded up; 0: it has passed. */
 int socket_left_ms(int64_t deadline_us);
 
-/* Connects to "HOST:PORT" (host empty: localhost): a descriptor that does not block, closed on exec; -1: `error` says
- * why (AWTCLIENT_ADDRESS). Resolving the name is the system's and may take longer than the deadline. */
-int socket_open(const char *address, int64_t deadline_us, awtclient_error *error);
+/* Begins to connect to "HOST:PORT" (host empty: localhost), to each of its places in turn; send and receive say
+ * AWTLINK_WANT_WRITE until one has taken it. The descriptor does not block and is closed on exec. False: `error` says
+ * why (AWTCLIENT_ADDRESS, AWTCLIENT_MEMORY), as do send and receive if nobody answers. Resolving the name is the
+ * system's and may take a while. */
+bool socket_begin(const char *address, awtlink_transport *out, awtclient_error *error);
 
-/* Accepts -1. */
-void socket_close(int descriptor);
-
-typedef enum socket_result { SOCKET_DONE, SOCKET_LATE, SOCKET_ENDED } socket_result;
-
-/* Sends `head`, then `tail`, whole. After anything but SOCKET_DONE part of them may have gone out. */
-socket_result socket_send(int descriptor, proto_blob head, proto_blob tail, int64_t deadline_us);
-/* Waits for bytes and takes those that are there, *got > 0 of them and at most `size`. */
-socket_result socket_receive(int descriptor, void *bytes, size_t size, size_t *got, int64_t deadline_us);
+/* Waits until the descriptor is ready for what is `wanted` (AWTLINK_READ, AWTLINK_WRITE), or has failed, which the next
+ * use of it will tell. False: not before the deadline. */
+bool socket_wait(int descriptor, unsigned wanted, int64_t deadline_us);
 
 #endif
