@@ -352,6 +352,8 @@ awt_status awt_forest_move(awt_forest *forest, const awt_motion *motion, awt_err
 /* Replaces all parameters, from the next step on. AWT_BAD_VALUE; the forest is unchanged then. */
 awt_status awt_forest_set_params(awt_forest *forest, const awt_params *params, awt_error *error);
 awt_params awt_forest_params(const awt_forest *forest);
+/* Copies the obstacles into `out`; how many there are. */
+uint32_t awt_forest_colliders(const awt_forest *forest, awt_collider out[AWT_MAX_COLLIDERS]);
 
 /* What happened in one awt_forest_advance, and the state after it. */
 typedef struct awt_step_stats {

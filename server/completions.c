@@ -110,6 +110,25 @@ static bool take_picture(service *shared, resident *r)
     return registry_publish(r, drawn);
 }
 
+/* A forest from the state directory has no maker: it waits for those who have its tokens. */
+static void take_restored(service *shared, resident *r)
+{
+    char quoted[LOG_QUOTED], why[LOG_QUOTED];
+    log_quote(r->name, strlen(r->name), quoted);
+    shared->forests.restoring--;
+    if (r->work.drawn) {
+        r->ready = true;
+        take_picture(shared, r);
+        log_write(LOG_INFO, "forest restored", "forest=%016llx name=%s time_us=%lld", (unsigned long long)r->handle,
+                  quoted, (long long)r->latest->figures.time_us);
+        return;
+    }
+    log_write(LOG_ERROR, "forest not restored", "forest=%016llx name=%s why=%s", (unsigned long long)r->handle, quoted,
+              log_quote(r->work.error.text, strlen(r->work.error.text), why));
+    keeper_set_aside(shared->forests.keeper, r->handle);
+    forest_inputs_free(registry_destroy(&shared->forests, r));
+}
+
 static void take_created(service *shared, resident *r)
 {
     session *asker = session_find(shared, r->creator);
@@ -120,7 +139,10 @@ static void take_created(service *shared, resident *r)
     r->tells = false;
     r->info = r->work.info;
     r->params = r->work.making->params;
-    if (accept_created(shared, r, asker)) {
+    r->motion_us = r->work.making->start.time_us;
+    if (r->restored) {
+        take_restored(shared, r);
+    } else if (accept_created(shared, r, asker)) {
         r->ready = true;
         take_picture(shared, r);
         reply_created(asker, r);
@@ -138,8 +160,7 @@ static const forest_input *report_refused(service *shared, const forest_input *i
     for (; input->kind != FOREST_QUERY; input = input->next) {
         session *sender = input->error.status == AWT_OK ? NULL : session_find(shared, input->from);
         if (sender) {
-            session_error_awt(sender, input->kind == FOREST_MOTION ? PROTO_MOTION : PROTO_SET_PARAMS,
-                              input->from.request, &input->error);
+            session_error_awt(sender, forest_input_message(input->kind), input->from.request, &input->error);
         }
     }
     return input;
@@ -156,8 +177,7 @@ static void answer(service *shared, const forest_input *asked, picture *shown, c
     if (v) {
         session_picture(asker, shown, v, asked->from.request);
     } else {
-        session_error_awt(asker, asked->kind == FOREST_BINDING ? PROTO_BINDING : PROTO_QUERY, asked->from.request,
-                          error);
+        session_error_awt(asker, forest_input_message(asked->kind), asked->from.request, error);
     }
 }
 
@@ -170,11 +190,14 @@ static void answer_all(service *shared, resident *r)
         answer(shared, query, r->latest, v, r->work.stepped ? &r->work.draw_error : &r->work.error);
     }
     for (const forest_input *look = r->work.looks; look; look = look->next) {
-        const bool binding = look->kind == FOREST_BINDING;
-        picture *shown = binding ? r->binding : r->latest;
-        const view_name name = {.form = binding ? PICTURE_BINDING : look->as.query.form};
-        answer(shared, look, shown, picture_view(shown, name), &r->work.draw_error);
+        const int form = look->kind == FOREST_BINDING ? PICTURE_BINDING
+                         : look->kind == FOREST_STATE ? PICTURE_STATE
+                                                      : look->as.query.form;
+        picture *shown = form == PICTURE_BINDING ? r->binding : form == PICTURE_STATE ? r->work.state : r->latest;
+        answer(shared, look, shown, picture_view(shown, (view_name){.form = form}), &r->work.draw_error);
     }
+    picture_release(r->work.state);
+    r->work.state = NULL;
     forest_inputs_free(r->work.inputs);
     forest_inputs_free(r->work.looks);
     r->work.inputs = r->work.looks = NULL;

@@ -2,6 +2,7 @@
 #include "forest_work.h"
 #include "base/error.h"
 #include "clock.h"
+#include "forest_state.h"
 #include "metrics.h"
 
 #include <stddef.h>
@@ -85,21 +86,31 @@ static awt_status make_forest(forest_work *w, awt_error *error)
     return awt_forest_create(w->groom, &def, &w->forest, error);
 }
 
-static awt_status make_hair(forest_work *w, awt_error *error)
+/* The groom; of a snapshot the forest, too. */
+static awt_status make_wisps(forest_work *w, awt_error *error)
 {
     awt_strands strands = {0};
-    note_stage(w, FOREST_STRANDS, 0);
+    if (w->making->state) {
+        return forest_state_restore(w, error);
+    }
     awt_status status = make_strands(w->making, &strands, error);
     if (status == AWT_OK) {
         status = make_groom(w, &strands, error);
     }
     awt_strands_fini(&strands);
+    return status;
+}
+
+static awt_status make_hair(forest_work *w, awt_error *error)
+{
+    note_stage(w, FOREST_STRANDS, 0);
+    awt_status status = make_wisps(w, error);
     note_stage(w, FOREST_DRAWS, 0);
     if (status == AWT_OK) {
         awt_groom_get_info(w->groom, &w->info);
         status = drawing_create(w->groom, &w->draws, error);
     }
-    return status == AWT_OK ? make_forest(w, error) : status;
+    return status == AWT_OK && !w->forest ? make_forest(w, error) : status;
 }
 
 /* ---- advancing ------------------------------------------------------------------------------------------------- */
@@ -192,6 +203,16 @@ static awt_status draw_binding(forest_work *w, awt_error *error)
     return AWT_OK;
 }
 
+static void show(forest_work *w, awt_status (*make)(forest_work *w, awt_error *error))
+{
+    awt_error error = {0};
+    awt_status status = make(w, &error);
+    if (status != AWT_OK && w->draw_error.status == AWT_OK) {
+        w->draw_error = error;
+        w->draw_error.status = status;
+    }
+}
+
 /* What is wanted of the forest as it stands. What fails is missing, and the first failure stands in draw_error. */
 static void draw(forest_work *w, int64_t begun_us)
 {
@@ -203,12 +224,10 @@ static void draw(forest_work *w, int64_t begun_us)
         w->draw_error.status = error_set(&w->draw_error, AWT_NO_MEMORY, NULL);
     }
     if (w->wants_binding) {
-        awt_error error = {0};
-        awt_status status = draw_binding(w, &error);
-        if (status != AWT_OK && w->draw_error.status == AWT_OK) {
-            w->draw_error = error;
-            w->draw_error.status = status;
-        }
+        show(w, draw_binding);
+    }
+    if (w->wants_state) {
+        show(w, forest_state_show);
     }
     w->encode_us = clock_between_us(drawn_us, clock_monotonic_us());
 }
@@ -232,6 +251,9 @@ static void run(forest_work *w, int64_t begun_us)
     if (status == AWT_OK || (!w->making && w->looks)) {
         draw(w, begun_us);
     }
+    if (w->keeper && w->forest) {
+        forest_state_keep(w);
+    }
 }
 
 void forest_work_run(job *work)
@@ -246,6 +268,14 @@ void forest_work_run(job *work)
 }
 
 /* ---- the end --------------------------------------------------------------------------------------------------- */
+
+uint16_t forest_input_message(forest_input_kind kind)
+{
+    static const uint16_t messages[] = {
+        [FOREST_MOTION] = PROTO_MOTION, [FOREST_PARAMS] = PROTO_SET_PARAMS, [FOREST_QUERY] = PROTO_QUERY,
+        [FOREST_LATEST] = PROTO_QUERY,  [FOREST_BINDING] = PROTO_BINDING,   [FOREST_STATE] = PROTO_SNAPSHOT};
+    return messages[kind];
+}
 
 void forest_inputs_free(forest_input *first)
 {
@@ -264,6 +294,7 @@ void forest_work_fini(forest_work *w)
     picture_release(w->spare);
     picture_release(w->drawn);
     picture_release(w->binding);
+    picture_release(w->state);
     drawing_destroy(w->draws);
     awt_forest_destroy(w->forest);
     awt_groom_destroy(w->groom);

@@ -8,7 +8,8 @@
 #define FOREST_WORK_H
 
 #include "drawing.h"
-#include "recipe.h"
+#include "keeper.h"
+#include "saved.h"
 #include "wishes.h"
 #include "worker.h"
 
@@ -26,7 +27,8 @@ typedef enum forest_input_kind {
     FOREST_PARAMS,
     FOREST_QUERY,
     FOREST_LATEST, /* QUERY of the latest frame */
-    FOREST_BINDING
+    FOREST_BINDING,
+    FOREST_STATE
 } forest_input_kind;
 
 /* One message about a forest, waiting for its turn. */
@@ -46,6 +48,9 @@ typedef struct forest_input {
     } as;
 } forest_input;
 
+/* The type of the message that such an input came in. */
+uint16_t forest_input_message(forest_input_kind kind);
+
 /* Frees a whole list. */
 void forest_inputs_free(forest_input *first);
 
@@ -61,7 +66,9 @@ typedef struct forest_work {
     forest_input *inputs; /* motions and parameters, and at the end the query that wants them; owned. NULL: no step */
     forest_input *looks;  /* who wants to see what there is then; owned */
     wishes wanted;
-    bool wants_binding;
+    bool wants_binding, wants_state;
+    keeper *keeper; /* not NULL: the state is handed to it, with `saving` */
+    saved saving;
     uint64_t handle;      /* for FRAME */
     uint64_t sequence;    /* of the forest's present state; a step makes the next one */
     int64_t submitted_us; /* monotonic clock: when the request came */
@@ -72,6 +79,7 @@ typedef struct forest_work {
     bool asleep;          /* after its last step nothing of it moves */
     picture *drawn;       /* a reference; NULL: nothing was to be drawn, or `error` says why */
     picture *binding;     /* a reference, with the one view PICTURE_BINDING */
+    picture *state;       /* likewise PICTURE_STATE */
     awt_error error;      /* why the step failed, where it did */
     awt_error draw_error; /* why a view, or the binding, is missing */
     uint32_t build_us, skipped_strands;

@@ -25,6 +25,9 @@ session_handler session_motion, session_set_params;
 /* session_frames.c: what comes out of a forest */
 session_handler session_query, session_binding, session_subscribe, session_unsubscribe, session_credit;
 
+/* session_state.c: a forest's whole state */
+session_handler session_snapshot, session_restore;
+
 /* session_info.c: about the daemon */
 session_handler session_list_styles, session_stats;
 

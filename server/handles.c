@@ -35,6 +35,24 @@ uint64_t handle_add(handle_table *table, void *item)
     return (uint64_t)slot->generation << 32 | index;
 }
 
+bool handle_put(handle_table *table, uint64_t handle, void *item)
+{
+    const uint64_t index = handle & UINT32_MAX;
+    ASSERT(item);
+    if (index >= table->capacity || handle >> 32 == 0 || table->slots[index].item) {
+        return false;
+    }
+    uint32_t *link = &table->first_free;
+    while (*link != index) {
+        link = &table->slots[*link].next_free;
+    }
+    handle_slot *slot = &table->slots[index];
+    *link = slot->next_free;
+    slot->item = item;
+    slot->generation = (uint32_t)(handle >> 32);
+    return true;
+}
+
 static handle_slot *slot_of(const handle_table *table, uint64_t handle)
 {
     uint64_t index = handle & UINT32_MAX;

@@ -26,6 +26,9 @@ void handle_table_fini(handle_table *table);
 
 /* The handle of `item` (not NULL); 0: the table is full. */
 uint64_t handle_add(handle_table *table, void *item);
+/* Puts `item` (not NULL) where that handle says, as it was in another run. False: the table has no such place, or it is
+ * taken. */
+bool handle_put(handle_table *table, uint64_t handle, void *item);
 /* NULL: no such handle, or not any more. */
 void *handle_find(const handle_table *table, uint64_t handle);
 /* What is in place `index` < capacity; NULL: nothing. */

@@ -204,6 +204,11 @@ void keeper_remove(keeper *k, uint64_t handle)
     pthread_mutex_unlock(&k->mutex);
 }
 
+void keeper_set_aside(keeper *k, uint64_t handle)
+{
+    vault_set_aside(&k->place, handle);
+}
+
 bool keeper_drain(keeper *k)
 {
     pthread_mutex_lock(&k->mutex);

@@ -27,6 +27,9 @@ bool keeper_write(keeper *k, uint64_t handle, unsigned char *bytes, size_t size)
 /* Has the forest's file removed, and what waits of it forgotten. */
 void keeper_remove(keeper *k, uint64_t handle);
 
+/* Puts the forest's file out of the way (vault_set_aside), now. */
+void keeper_set_aside(keeper *k, uint64_t handle);
+
 /* Waits until nothing waits. False: something could not be written since the last call. */
 bool keeper_drain(keeper *k);
 

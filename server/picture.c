@@ -78,6 +78,12 @@ void picture_message(const picture *p, const view *v, proto_message *out)
         out->as.binding_reply = (struct proto_binding_reply){.forest = p->figures.forest, .binding = bytes};
         return;
     }
+    if (v->name.form == PICTURE_STATE) {
+        out->type = PROTO_SNAPSHOT_REPLY;
+        out->as.snapshot_reply = (struct proto_snapshot_reply){
+            .forest = p->figures.forest, .time_us = p->figures.time_us, .hash = p->state_hash, .state = bytes};
+        return;
+    }
     const frame_form *f = form_at(v->name.form);
     out->type = PROTO_FRAME;
     out->as.frame = p->figures;

@@ -15,16 +15,16 @@
 
 /* What a view is of. */
 typedef struct view_name {
-    int form;      /* number of the form; PICTURE_BINDING: what guides are evaluated with */
+    int form;      /* number of the form; PICTURE_BINDING: what guides are evaluated with; PICTURE_STATE: a snapshot */
     uint64_t base; /* sequence of the frame that it is a delta against; 0: whole in itself */
 } view_name;
 
-enum { PICTURE_BINDING = FORM_COUNT };
+enum { PICTURE_BINDING = FORM_COUNT, PICTURE_STATE };
 
 typedef struct view {
     view_name name;
     uint32_t clamped_points, encode_us;
-    geom_buffer glb; /* of PICTURE_BINDING the binding's own bytes */
+    geom_buffer glb; /* of PICTURE_BINDING and PICTURE_STATE these bytes themselves */
 } view;
 
 typedef struct picture {
@@ -32,6 +32,7 @@ typedef struct picture {
     struct picture *earlier;    /* a reference to what was drawn of this step before; NULL: nothing */
     struct proto_frame figures; /* of FRAME all that does not depend on the view or on the receiver */
     int64_t stepped_us;         /* monotonic clock at the end of its step: its age counts from here */
+    uint64_t state_hash;        /* of PICTURE_STATE */
     uint32_t view_count;
     view views[LIMIT_PICTURE_VIEWS];
 } picture;
@@ -53,7 +54,8 @@ void picture_drop(picture *p);
 /* NULL: there is no such view of this step. */
 const view *picture_view(const picture *p, view_name name);
 
-/* FRAME, or BINDING_REPLY, with this view; `out`'s request and what differs from receiver to receiver is the caller's.
+/* FRAME, BINDING_REPLY or SNAPSHOT_REPLY with this view; `out`'s request and what differs from receiver to receiver is
+ * the caller's.
  */
 void picture_message(const picture *p, const view *v, proto_message *out);
 

@@ -35,8 +35,8 @@ static const struct rule {
     {PROTO_STATS, IN_OPEN, session_stats},
     {PROTO_SET_CLOCK, IN_OPEN, NULL},
     {PROTO_STEP_MANY, IN_OPEN, NULL},
-    {PROTO_SNAPSHOT, IN_OPEN, NULL},
-    {PROTO_RESTORE, IN_OPEN, NULL},
+    {PROTO_SNAPSHOT, IN_OPEN, session_snapshot},
+    {PROTO_RESTORE, IN_OPEN, session_restore},
 };
 
 static const struct rule *rule_of(uint16_t type)

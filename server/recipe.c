@@ -107,11 +107,26 @@ awt_status recipe_create(const struct proto_create *message, upload *file, uploa
     return AWT_OK;
 }
 
+awt_status recipe_restore(upload *state, size_t offset, proto_str name, recipe **out, awt_error *error)
+{
+    recipe *r = calloc(1, sizeof *r);
+    *out = r;
+    if (!r) {
+        return error_set(error, AWT_NO_MEMORY, NULL);
+    }
+    r->state = upload_hold(state);
+    r->state_offset = offset;
+    r->placement = (awt_placement){.up = AWT_UP_Y, .scale = 1};
+    proto_str_copy(name, r->name, sizeof r->name);
+    return AWT_OK;
+}
+
 void recipe_destroy(recipe *made)
 {
     if (made) {
         upload_release(made->file);
         upload_release(made->hierarchy);
+        upload_release(made->state);
         free(made);
     }
 }

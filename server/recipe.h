@@ -13,6 +13,8 @@ typedef struct recipe {
     const awt_style *style; /* NULL: from the upload */
     upload *file;           /* NULL: from the style; a reference */
     upload *hierarchy;      /* NULL: wisps are made of the strands; a reference */
+    upload *state;          /* not NULL: the forest is restored from the snapshot in it; a reference */
+    size_t state_offset;    /* where that begins */
     uint64_t seed;
     uint32_t strands;
     awt_placement placement; /* of the file; after placing: what was taken */
@@ -30,6 +32,8 @@ typedef struct recipe {
  * none. The caller owns *out: recipe_destroy. AWT_NO_STYLE, AWT_NO_PARAM, AWT_BAD_VALUE, AWT_LIMIT, AWT_NO_MEMORY. */
 awt_status recipe_create(const struct proto_create *message, upload *file, upload *hierarchy, recipe **out,
                          awt_error *error);
+/* A recipe of a snapshot, which begins at `offset` of a complete upload (a reference is taken). Errors likewise. */
+awt_status recipe_restore(upload *state, size_t offset, proto_str name, recipe **out, awt_error *error);
 /* Under the service's lock. Accepts NULL. */
 void recipe_destroy(recipe *made);
 

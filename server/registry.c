@@ -47,14 +47,24 @@ void registry_fini(registry *reg)
     *reg = (registry){0};
 }
 
-/* A resident at the end of the list, with handle and tokens. */
+/* Puts it at the end of the list. */
+static void link_resident(registry *reg, resident *r)
+{
+    r->waiting_end = &r->waiting;
+    r->previous = reg->last;
+    *(reg->last ? &reg->last->next : &reg->first) = r;
+    reg->last = r;
+    reg->alive++;
+    metrics_add(METRIC_FORESTS, 1);
+}
+
+/* A resident with a new handle and new tokens. */
 static resident *resident_create(registry *reg)
 {
     resident *r = calloc(1, sizeof *r);
     if (!r) {
         return NULL;
     }
-    r->waiting_end = &r->waiting;
     r->handle = random_fill(r->drive_token, sizeof r->drive_token) && random_fill(r->view_token, sizeof r->view_token)
                     ? handle_add(&reg->handles, r)
                     : 0;
@@ -62,11 +72,7 @@ static resident *resident_create(registry *reg)
         free(r);
         return NULL;
     }
-    r->previous = reg->last;
-    *(reg->last ? &reg->last->next : &reg->first) = r;
-    reg->last = r;
-    reg->alive++;
-    metrics_add(METRIC_FORESTS, 1);
+    link_resident(reg, r);
     return r;
 }
 
@@ -98,6 +104,18 @@ static void submit(registry *reg, resident *r)
     worker_pool_submit(reg->pool, &r->work.job);
 }
 
+/* Has a worker make what the recipe says. */
+static void make(registry *reg, resident *r, recipe *making, int64_t now_us)
+{
+    memcpy(r->name, making->name, sizeof r->name);
+    r->params = making->params;
+    r->motion_us = making->start.time_us;
+    atomic_init(&r->work.note, 0);
+    r->work.making = making;
+    r->work.submitted_us = now_us;
+    submit(reg, r);
+}
+
 awt_status registry_create(registry *reg, recipe *making, origin from, int64_t now_us, awt_error *error)
 {
     awt_status status = AWT_OK;
@@ -112,16 +130,42 @@ awt_status registry_create(registry *reg, recipe *making, origin from, int64_t n
         recipe_destroy(making);
         return status == AWT_OK ? error_set(error, AWT_NO_MEMORY, NULL) : status;
     }
-    memcpy(r->name, making->name, sizeof r->name);
     r->creator = from;
-    r->params = making->params;
-    r->motion_us = making->start.time_us;
     r->tells = making->tells;
     reg->telling += r->tells;
-    atomic_init(&r->work.note, 0);
-    r->work.making = making;
-    r->work.submitted_us = now_us;
-    submit(reg, r);
+    make(reg, r, making, now_us);
+    return AWT_OK;
+}
+
+awt_status registry_restore(registry *reg, const saved *from, upload *file, int64_t now_us, awt_error *error)
+{
+    recipe *making = NULL;
+    resident *r = reg->alive < reg->greatest ? calloc(1, sizeof *r) : NULL;
+    const size_t offset = (size_t)file->total - from->state_size;
+    awt_status status = r ? recipe_restore(file, offset, proto_str_of(from->name), &making, error) : AWT_LIMIT;
+    if (!r) {
+        return error_set(error, AWT_LIMIT, "there is no room for more than %lu forests", (unsigned long)reg->alive);
+    }
+    if (status == AWT_OK && !handle_put(&reg->handles, from->handle, r)) {
+        status =
+            error_set(error, AWT_BAD_VALUE, "its handle cannot be, or is taken; is --max-forests less than it was?");
+    }
+    if (status != AWT_OK) {
+        recipe_destroy(making);
+        free(r);
+        return status;
+    }
+    r->handle = from->handle;
+    _Static_assert((int)SAVED_TOKEN_SIZE == (int)REGISTRY_TOKEN_SIZE, "tokens are kept whole");
+    memcpy(r->drive_token, from->drive_token, sizeof r->drive_token);
+    memcpy(r->view_token, from->view_token, sizeof r->view_token);
+    r->sequence = from->sequence;
+    r->kept_sequence = from->sequence + 1; /* that of the frame which is drawn of it now: nothing has changed */
+    r->restored = true;
+    r->left_us = now_us;
+    reg->restoring++;
+    link_resident(reg, r);
+    make(reg, r, making, now_us);
     return AWT_OK;
 }
 
@@ -129,6 +173,15 @@ resident *registry_find(const registry *reg, uint64_t handle)
 {
     resident *r = handle_find(&reg->handles, handle);
     return r && r->ready ? r : NULL;
+}
+
+/* A forest that was ended is not to come back; its last job may have brought it to the disk once more. */
+static void resident_end(registry *reg, resident *r)
+{
+    if (reg->keeper) {
+        keeper_remove(reg->keeper, r->work.handle);
+    }
+    resident_free(reg, r);
 }
 
 forest_input *registry_destroy(registry *reg, resident *r)
@@ -143,7 +196,7 @@ forest_input *registry_destroy(registry *reg, resident *r)
     r->waiting_end = &r->waiting;
     r->waiting_inputs = r->waiting_queries = r->waiting_looks = 0;
     if (!r->busy) {
-        resident_free(reg, r);
+        resident_end(reg, r);
     }
     return waiting;
 }
@@ -171,6 +224,8 @@ static void take_looks(resident *r)
     for (const forest_input *look = r->looks; look; look = look->next) {
         if (look->kind == FOREST_BINDING) {
             r->work.wants_binding = !r->binding;
+        } else if (look->kind == FOREST_STATE) {
+            r->work.wants_state = true;
         } else {
             wishes_add(&r->work.wanted, (view_name){.form = look->as.query.form});
         }
@@ -180,20 +235,35 @@ static void take_looks(resident *r)
     r->waiting_looks = 0;
 }
 
+/* The state after this job goes to the disk, if that is due. */
+static void take_keeping(registry *reg, resident *r)
+{
+    r->work.keeper = r->keep_due ? reg->keeper : NULL;
+    r->keep_due = false;
+    if (r->work.keeper) {
+        saved *s = &r->work.saving;
+        *s = (saved){.handle = r->handle};
+        memcpy(s->drive_token, r->drive_token, sizeof s->drive_token);
+        memcpy(s->view_token, r->view_token, sizeof s->view_token);
+        memcpy(s->name, r->name, sizeof s->name);
+    }
+}
+
 /* What waits becomes a job, if no worker has the forest already. */
 static void start_next(registry *reg, resident *r)
 {
     const bool steps = r->waiting_queries > 0;
-    if (r->busy || !(steps || r->looks || r->redraw)) {
+    if (r->busy || !(steps || r->looks || r->redraw || r->keep_due)) {
         return;
     }
     r->work.wanted = (wishes){0};
-    r->work.wants_binding = false;
+    r->work.wants_binding = r->work.wants_state = false;
     if (steps) {
         take_step(r);
     }
     take_looks(r);
     reg->wish(r, steps, &r->work.wanted);
+    take_keeping(reg, r);
     r->redraw = false;
     submit(reg, r);
 }
@@ -225,6 +295,14 @@ bool registry_push(registry *reg, resident *r, forest_input *input)
     r->waiting_end = &input->next;
     start_next(reg, r);
     return true;
+}
+
+void registry_keep(registry *reg, resident *r)
+{
+    if (reg->keeper && r->ready && !r->doomed && r->sequence != r->kept_sequence) {
+        r->keep_due = true;
+        start_next(reg, r);
+    }
 }
 
 void registry_redraw(registry *reg, resident *r, int64_t now_us)
@@ -298,6 +376,7 @@ resident *registry_take_back(job *done)
     metrics_add(METRIC_FORESTS_ASLEEP, (int64_t)r->work.asleep - (int64_t)r->asleep);
     r->bytes = bytes;
     r->asleep = r->work.asleep;
+    r->kept_sequence = r->work.keeper ? r->work.sequence : r->kept_sequence;
     for (int i = 0; i < FORM_COUNT && r->work.draws; i++) {
         r->form_bytes[i] = drawing_form_bytes(r->work.draws, i);
     }
@@ -308,7 +387,7 @@ void registry_continue(registry *reg, resident *r)
 {
     r->busy = false;
     if (r->doomed) {
-        resident_free(reg, r);
+        resident_end(reg, r);
     } else {
         start_next(reg, r);
     }

@@ -28,17 +28,20 @@ typedef struct resident {
     struct resident *next, *previous; /* in order of creation */
     uint8_t drive_token[REGISTRY_TOKEN_SIZE], view_token[REGISTRY_TOKEN_SIZE];
     char name[RECIPE_NAME];
-    origin creator;   /* whom CREATE is answered to */
-    bool ready;       /* made; before, nobody but CREATE's answer may touch it */
-    bool busy;        /* a worker has `work` */
-    bool doomed;      /* ended; freed when the worker hands `work` back */
-    bool tells;       /* is being made for someone who wants PROGRESS */
-    uint32_t holders; /* connections, and parked sessions, that have it open (holdings.h) */
-    int64_t left_us;  /* when the last holder left */
+    origin creator;         /* whom CREATE is answered to */
+    bool ready;             /* made; before, nobody but CREATE's answer may touch it */
+    bool busy;              /* a worker has `work` */
+    bool doomed;            /* ended; freed when the worker hands `work` back */
+    bool tells;             /* is being made for someone who wants PROGRESS */
+    uint32_t holders;       /* connections, and parked sessions, that have it open (holdings.h) */
+    bool keep_due;          /* its state is to be brought to the disk */
+    uint64_t kept_sequence; /* of the state that was handed to the keeper last; 0: none */
+    bool restored;          /* it is from the state directory: nobody made it on a connection */
+    int64_t left_us;        /* when the last holder left */
 
     forest_input *waiting, **waiting_end;
     uint32_t waiting_inputs, waiting_queries;
-    forest_input *looks; /* FOREST_LATEST and FOREST_BINDING that wait, the latest first */
+    forest_input *looks; /* FOREST_LATEST, FOREST_BINDING and FOREST_STATE that wait, the latest first */
     uint32_t waiting_looks;
     bool redraw; /* a subscription wants a view that the latest picture lacks */
 
@@ -68,7 +71,9 @@ typedef struct registry {
     resident *first, *last; /* in order of creation; doomed ones too, until they are freed */
     uint32_t alive;         /* doomed ones too: they hold memory */
     uint32_t greatest;
-    uint32_t telling; /* residents that tell */
+    uint32_t telling;   /* residents that tell */
+    uint32_t restoring; /* restored residents that are not ready yet */
+    keeper *keeper;     /* NULL: nothing is brought to the disk */
     worker_pool *pool;
     void (*wish)(const resident *r, bool steps, wishes *out); /* adds what the subscriptions want of the next picture */
 } registry;
@@ -83,6 +88,13 @@ void registry_fini(registry *reg);
 /* Takes `making` and has a worker make the forest of it. The result arrives with the job. AWT_LIMIT (too many
  * forests), AWT_NO_MEMORY (or no random bytes); `making` is freed then. */
 awt_status registry_create(registry *reg, recipe *making, origin from, int64_t now_us, awt_error *error);
+
+/* Makes a forest again from the state directory, by its own handle and tokens; only before anything else is made.
+ * `from` is of the upload's bytes. Errors as above, AWT_BAD_VALUE: its handle is taken or cannot be. */
+awt_status registry_restore(registry *reg, const saved *from, upload *file, int64_t now_us, awt_error *error);
+
+/* Has the forest's state brought to the disk, unless nothing has changed since. Nothing without a keeper. */
+void registry_keep(registry *reg, resident *r);
 
 /* NULL: no such forest, or it is not made yet. */
 resident *registry_find(const registry *reg, uint64_t handle);

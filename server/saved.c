@@ -18,10 +18,6 @@ static void walk(codec *c, saved *s)
     codec_bytes(c, s->view_token, sizeof s->view_token);
     codec_bytes(c, s->name, sizeof s->name);
     codec_u64(c, &s->sequence);
-    codec_u32(c, &s->motion_epoch);
-    codec_u32(c, &s->motion_sequence);
-    codec_i64(c, &s->motion_us);
-    codec_bool(c, &s->moved);
     codec_u64(c, &s->hash);
 }
 
@@ -38,6 +34,11 @@ size_t saved_size(const saved *s)
     return SAVED_HEADER + fields_size() + s->state_size;
 }
 
+unsigned char *saved_state(const saved *s, void *bytes)
+{
+    return (unsigned char *)bytes + saved_size(s) - s->state_size;
+}
+
 void saved_write(const saved *s, void *bytes)
 {
     unsigned char *at = bytes;
@@ -46,7 +47,6 @@ void saved_write(const saved *s, void *bytes)
     codec writing = codec_writing(at + SAVED_HEADER, behind);
     walk(&writing, &fields);
     ASSERT(!writing.spent);
-    memcpy(at + SAVED_HEADER + writing.at, s->state, s->state_size);
     memcpy(at, magic, sizeof magic);
     store_u32(at + 4, SAVED_VERSION);
     store_u32(at + 8, crc32c(at + SAVED_HEADER, behind));

@@ -8,24 +8,24 @@
 #define SAVED_H
 
 #include "recipe.h"
-#include "registry.h"
+
+enum { SAVED_TOKEN_SIZE = 16 };
 
 typedef struct saved {
     uint64_t handle;
-    uint8_t drive_token[REGISTRY_TOKEN_SIZE], view_token[REGISTRY_TOKEN_SIZE];
+    uint8_t drive_token[SAVED_TOKEN_SIZE], view_token[SAVED_TOKEN_SIZE];
     char name[RECIPE_NAME];
-    uint64_t sequence;                      /* of its latest frame */
-    uint32_t motion_epoch, motion_sequence; /* of the last MOTION taken */
-    int64_t motion_us;
-    bool moved;
+    uint64_t sequence; /* of its latest frame */
     uint64_t hash;     /* of the state, as awt_forest_hash says */
     size_t state_size; /* the snapshot */
-    const void *state; /* in the bytes that it was read from */
+    const void *state; /* in the bytes that it was read from; not looked at in writing */
 } saved;
 
-/* Bytes that saved_write writes. */
+/* Bytes of the whole file. */
 size_t saved_size(const saved *s);
-/* Writes all, the snapshot included, into bytes[0 .. saved_size - 1]. */
+/* Where in them the snapshot has its place. */
+unsigned char *saved_state(const saved *s, void *bytes);
+/* Writes all the rest of bytes[0 .. saved_size - 1]; the snapshot must stand in its place already. */
 void saved_write(const saved *s, void *bytes);
 /* Reads it from bytes that may be anything. AWT_BAD_FORMAT (no such file, or of another version), AWT_TRUNCATED,
  * AWT_BAD_VALUE (damaged). The snapshot is not looked into. */

@@ -11,6 +11,7 @@ bool service_init(service *s, const service_options *options)
     s->uploads.greatest = LIMIT_UPLOADS_BYTES;
     s->started_us = options->clock_us();
     s->forests_due_us = options->forest_grace_us > 0 ? s->started_us : INT64_MAX;
+    s->keep_due_us = options->keeper && options->keep_us > 0 ? s->started_us + options->keep_us : INT64_MAX;
     s->has_lock = pthread_mutex_init(&s->lock, NULL) == 0;
     if (!s->has_lock) {
         return false;
@@ -23,6 +24,7 @@ bool service_init(service *s, const service_options *options)
     if (s->pool && registry_init(&s->forests, options->max_forests, s->pool, subscriptions_wish) &&
         handle_table_init(&s->sessions, options->max_sessions)) {
         metrics_set(METRIC_WORKERS, options->workers);
+        s->forests.keeper = options->keeper;
         return true;
     }
     service_fini(s);

@@ -24,6 +24,8 @@ typedef struct service_options {
     int64_t resume_grace_us;     /* that a session which was cut off can be resumed */
     int64_t forest_grace_us;     /* that a forest lives on when nobody has it open; 0: for ever */
     int64_t quiet_us;            /* that a client may be silent; 0: for ever */
+    int64_t keep_us;             /* from one round of bringing forests to the disk to the next; 0: none */
+    keeper *keeper;              /* not the service's own; NULL: nothing is brought to the disk */
     int64_t (*clock_us)(void);   /* clock_monotonic_us, or a test's */
     void (*wake)(void *context); /* called from workers, without a lock, when a job is done */
     void *wake_context;
@@ -48,6 +50,7 @@ typedef struct service {
     int64_t started_us;
     int64_t progress_us;    /* when PROGRESS is due next, if anyone wants it */
     int64_t forests_due_us; /* when forests are looked at next that nobody has open; INT64_MAX: never */
+    int64_t keep_due_us;    /* when forests are brought to the disk next; likewise */
 } service;
 
 /* Starts the workers. False: no memory or no threads; nothing is left behind then. */

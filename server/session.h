@@ -88,6 +88,9 @@ void session_detach(session *s, uint64_t forest);
 /* The forest that the message names, if the session may use it so; NULL: an ERROR was sent. */
 resident *session_resident(session *s, const proto_message *message, uint64_t forest, bool to_drive);
 
+/* The complete upload of that number; NULL: there is none. */
+upload *session_complete_upload(session *s, uint32_t number);
+
 /* An input of this message for a forest's queue; the caller fills in `as`. NULL: no memory (session_push says so). */
 forest_input *session_input(const session *s, const proto_message *message, forest_input_kind kind);
 /* Queues it (taken; may be NULL). False: an ERROR was sent. */

@@ -6,25 +6,14 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The complete upload that a CREATE names; NULL: there is none. */
-static upload *find_upload(session *s, uint32_t number)
-{
-    for (uint32_t i = 0; i < LIMIT_SESSION_UPLOADS; i++) {
-        if (s->holds.uploads[i] && s->holds.uploads[i]->number == number && s->holds.uploads[i]->complete) {
-            return s->holds.uploads[i];
-        }
-    }
-    return NULL;
-}
-
 void session_create(session *s, const proto_message *message)
 {
     const struct proto_create *create = &message->as.create;
     awt_error error = {0};
     recipe *making = NULL;
     const bool from_upload = create->source == RECIPE_FROM_UPLOAD, own_hierarchy = from_upload && create->own_hierarchy;
-    upload *file = from_upload ? find_upload(s, create->upload) : NULL;
-    upload *hierarchy = own_hierarchy ? find_upload(s, create->hierarchy) : NULL;
+    upload *file = from_upload ? session_complete_upload(s, create->upload) : NULL;
+    upload *hierarchy = own_hierarchy ? session_complete_upload(s, create->hierarchy) : NULL;
     if (create->source > RECIPE_FROM_UPLOAD) {
         session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE,
                       "source is %u; 0 is a built-in style, 1 an upload", (unsigned)create->source);
@@ -96,8 +85,8 @@ static void refuse_waiting(service *shared, forest_input *waiting)
         session *asker = input->kind >= FOREST_QUERY ? session_find(shared, input->from) : NULL;
         if (asker) {
             asker->pending--;
-            session_error(asker, input->kind == FOREST_BINDING ? PROTO_BINDING : PROTO_QUERY, input->from.request,
-                          PROTO_ERROR_NO_FOREST, "the forest was destroyed before this query had its turn");
+            session_error(asker, forest_input_message(input->kind), input->from.request, PROTO_ERROR_NO_FOREST,
+                          "the forest was destroyed before this query had its turn");
         }
     }
     forest_inputs_free(waiting);

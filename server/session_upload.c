@@ -103,3 +103,13 @@ void session_upload(session *s, const proto_message *message)
     }
     reply(s, message, (*place)->received);
 }
+
+upload *session_complete_upload(session *s, uint32_t number)
+{
+    for (uint32_t i = 0; i < LIMIT_SESSION_UPLOADS; i++) {
+        if (s->holds.uploads[i] && s->holds.uploads[i]->number == number && s->holds.uploads[i]->complete) {
+            return s->holds.uploads[i];
+        }
+    }
+    return NULL;
+}

@@ -12,7 +12,8 @@ static int64_t least(int64_t a, int64_t b)
 
 int64_t upkeep_due_us(const service *shared)
 {
-    return least(least(making_due_us(shared), parking_due_us(&shared->parked)), shared->forests_due_us);
+    return least(least(making_due_us(shared), parking_due_us(&shared->parked)),
+                 least(shared->forests_due_us, shared->keep_due_us));
 }
 
 static void end_forest(service *shared, resident *r)
@@ -39,9 +40,35 @@ static void end_left_forests(service *shared, int64_t now_us)
     }
 }
 
+void upkeep_keep_all(service *shared)
+{
+    for (resident *r = shared->forests.first; r; r = r->next) {
+        registry_keep(&shared->forests, r);
+    }
+}
+
+bool upkeep_kept_all(const service *shared)
+{
+    for (const resident *r = shared->forests.first; r; r = r->next) {
+        if (r->keep_due || (r->busy && r->work.keeper)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void keep_round(service *shared, int64_t now_us)
+{
+    if (now_us >= shared->keep_due_us) {
+        shared->keep_due_us = now_us + shared->options.keep_us;
+        upkeep_keep_all(shared);
+    }
+}
+
 void upkeep_do(service *shared, int64_t now_us)
 {
     making_tell(shared, now_us);
     parking_expire(&shared->parked, &shared->forests, now_us);
     end_left_forests(shared, now_us);
+    keep_round(shared, now_us);
 }

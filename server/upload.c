@@ -21,6 +21,18 @@ upload *upload_create(uint32_t number, uint64_t total, const uint8_t expected[AU
     return up;
 }
 
+upload *upload_of(unsigned char *bytes, size_t size)
+{
+    upload *up = calloc(1, sizeof *up);
+    if (!up) {
+        free(bytes);
+        return NULL;
+    }
+    *up =
+        (upload){.references = 1, .total = size, .received = size, .complete = true, .bytes = bytes, .capacity = size};
+    return up;
+}
+
 upload *upload_hold(upload *up)
 {
     up->references++;
@@ -30,7 +42,9 @@ upload *upload_hold(upload *up)
 void upload_release(upload *up)
 {
     if (up && --up->references == 0) {
-        up->budget->used -= up->capacity;
+        if (up->budget) {
+            up->budget->used -= up->capacity;
+        }
         free(up->bytes);
         free(up);
     }

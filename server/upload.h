@@ -24,8 +24,8 @@ typedef struct upload {
     unsigned char *bytes; /* [capacity], heap */
     size_t capacity;
     uint8_t expected[AUTH_HASH_SIZE];
-    auth_sha256 hash; /* of the bytes received */
-    upload_budget *budget;
+    auth_sha256 hash;      /* of the bytes received */
+    upload_budget *budget; /* NULL: none */
 } upload;
 
 typedef enum upload_result {
@@ -39,6 +39,9 @@ typedef enum upload_result {
 
 /* An empty upload with one reference. NULL: no memory. The budget must outlive it. */
 upload *upload_create(uint32_t number, uint64_t total, const uint8_t expected[AUTH_HASH_SIZE], upload_budget *budget);
+/* A complete one of bytes that are there already (heap, taken; freed where it fails), outside of any budget. NULL: no
+ * memory. */
+upload *upload_of(unsigned char *bytes, size_t size);
 upload *upload_hold(upload *up);
 /* Accepts NULL. */
 void upload_release(upload *up);

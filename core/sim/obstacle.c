@@ -7,6 +7,8 @@
 #include "base/error.h"
 #include "sim/joint.h"
 
+#include <string.h>
+
 enum { COLLIDER_DEFAULTS = 6 };
 
 /* A root farther than this many head radii from the head's centre does not grow on the head. */
@@ -61,6 +63,12 @@ uint32_t obstacle_defaults(const awt_groom *groom, awt_collider out[AWT_MAX_COLL
         }
     }
     return taken;
+}
+
+uint32_t awt_forest_colliders(const awt_forest *f, awt_collider out[AWT_MAX_COLLIDERS])
+{
+    memcpy(out, f->colliders, f->collider_count * sizeof *out);
+    return f->collider_count;
 }
 
 awt_status obstacle_check(const awt_collider *colliders, uint32_t count, awt_error *error)

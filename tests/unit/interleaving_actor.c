@@ -66,9 +66,10 @@ static void see_answer(actor *who, open_request *asked, const proto_message *mes
 {
     stage *s = who->on;
     begun_subscription *sub = find_subscription(who, message->request);
-    const uint16_t expected = asked->type == PROTO_QUERY  ? PROTO_FRAME
-                              : asked->type == PROTO_PING ? PROTO_PONG
-                                                          : asked->type | PROTO_REPLY;
+    const uint16_t expected = asked->type == PROTO_QUERY     ? PROTO_FRAME
+                              : asked->type == PROTO_PING    ? PROTO_PONG
+                              : asked->type == PROTO_RESTORE ? PROTO_CREATE_REPLY
+                                                             : asked->type | PROTO_REPLY;
     s->seen.answers++;
     stage_expect(s, message->type == expected || (asked->type == PROTO_HELLO && message->type == PROTO_WELCOME),
                  "an answer is not of its request's kind");
@@ -421,6 +422,14 @@ static void say_of_forest(actor *who)
     proto_message message = {0};
     const uint64_t forest = some_forest(who)->forest;
     switch (decide(who, 8)) {
+    case 3:
+        message.type = PROTO_SNAPSHOT;
+        message.as.snapshot.forest = forest;
+        break;
+    case 4:
+        message.type = PROTO_RESTORE;
+        message.as.restore.upload = decide(who, 3);
+        break;
     case 0:
         message.type = PROTO_DESTROY;
         message.as.destroy.forest = forest;
