@@ -30,7 +30,7 @@ INC_tests := -Itests -Iserver -Iclients -Icore -Iproto -I$(B)
 SRC_core := $(wildcard core/*/*.c core/*/*.cc)
 SRC_proto := $(wildcard proto/*.c)
 SRC_server := $(wildcard server/*.c)
-SRC_clients := $(filter-out clients/awtctl%,$(wildcard clients/*.c clients/*/*.c))
+SRC_clients := $(filter-out clients/awtctl% clients/web/%,$(wildcard clients/*.c clients/*/*.c))
 SRC_awtctl := $(wildcard clients/awtctl*.c)
 SRC_unit := tests/main.c $(wildcard tests/unit/*.c tests/e2e/*.c)
 SRC_bench := $(wildcard tests/bench/*.c)
@@ -46,7 +46,7 @@ LIBCLIENT := $(B)/libawtclient.a
 LIBSERVER := $(B)/libawtserver.a
 PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-bench
 
-.PHONY: all help demo test soak sheets bench format lint install clean deps deps-test deps-soak programs tests-binary
+.PHONY: all help demo web test soak sheets bench format lint install clean deps deps-test deps-soak programs tests-binary
 .DELETE_ON_ERROR:
 
 all: programs $(B)/rooms.ok
@@ -91,21 +91,31 @@ $(LIBAWT) $(LIBPROTO) $(LIBCLIENT) $(LIBSERVER):
 
 # The receiver (core/geom/receive.h) for systems without POSIX: nothing but standard C may be in it.
 SRC_receiver := $(patsubst %,core/%.c,base/arena base/crc32c base/error geom/binding geom/cloud_read geom/delta \
-	geom/delta_checksum geom/delta_glb_read geom/delta_reader geom/draco_extra geom/draco_read geom/glb geom/glb_container geom/guides geom/json \
-	geom/json_number geom/lines geom/nodes_read geom/numbers geom/quantise geom/rans geom/receive geom/receive_delta \
-	geom/symbols_read geom/topology sim/evaluate) tests/node/receiver.c
-CFLAGS_receiver := -std=c17 -O2 -ffp-contract=off -fno-math-errno $(WARN) -Wmissing-prototypes -Icore
-EXPORTS_receiver := malloc free receiver_binding receiver_frame receiver_numbers receiver_positions receiver_strands \
-	receiver_points receiver_error
+	geom/delta_checksum geom/delta_glb_read geom/delta_read geom/delta_reader geom/draco_extra geom/draco_read geom/glb \
+	geom/glb_container geom/guides geom/json geom/json_number geom/lines geom/nodes_read geom/numbers geom/quantise geom/rans \
+	geom/receive geom/receive_delta geom/symbols_read geom/topology sim/evaluate) clients/framering.c clients/web/receiver.c
+# Motion files and built-in clips, for the viewer.
+SRC_motion := core/base/error.c core/base/trig.c $(filter-out clients/motion/load.c,$(wildcard clients/motion/*.c)) clients/web/motion.c
+CFLAGS_web := -std=c17 -O2 -ffp-contract=off -fno-math-errno $(WARN) -Wmissing-prototypes $(INC_clients)
+EXPORTS := -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH -sEXPORTED_FUNCTIONS=_malloc$(,)_free
 MINGW_CC ?= x86_64-w64-mingw32-gcc
 EMCC ?= emcc
 $(B)/receiver.dll: $(SRC_receiver) $(HEADERS)
 	@echo "  MINGW $@"
-	$(Q)$(MINGW_CC) $(CFLAGS_receiver) -Wno-float-conversion -shared -o $@ $(SRC_receiver)
+	$(Q)$(MINGW_CC) $(CFLAGS_web) -Wno-float-conversion -shared -o $@ $(SRC_receiver)
 $(B)/receiver.wasm: $(SRC_receiver) $(HEADERS)
 	@echo "  EMCC $@"
-	$(Q)$(EMCC) $(CFLAGS_receiver) -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH \
-	-sEXPORTED_FUNCTIONS=$(subst $() ,$(,),$(addprefix _,$(EXPORTS_receiver))) -o $@ $(SRC_receiver)
+	$(Q)$(EMCC) $(CFLAGS_web) $(EXPORTS) -o $@ $(SRC_receiver)
+$(B)/motion.wasm: $(SRC_motion) $(HEADERS)
+	@echo "  EMCC $@"
+	$(Q)$(EMCC) $(CFLAGS_web) $(EXPORTS) -o $@ $(SRC_motion)
+
+# What the gateway and its pages are built of, beside the files of clients/web.
+$(B)/messages.mjs: clients/web/make_messages.mjs proto/messages.def proto/errors.def
+	@mkdir -p $(@D)
+	@echo "  NODE $@"
+	$(Q)node $< proto > $@
+web: $(B)/messages.mjs $(B)/receiver.wasm $(B)/motion.wasm
 
 # A reader of frames that shares no code with us: tinygltf with Draco, as Debian does not build it (tests/node/check_others.mjs).
 $(B)/read_tinygltf: tests/node/read_tinygltf.cc

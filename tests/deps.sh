@@ -1,6 +1,6 @@
 #!/bin/sh
-# deps.sh run|test|soak: installs the Debian packages that awtd (run), its tests (test) and its long tests (soak) need,
-# where a command or header that they bring is missing. DEPS=never installs nothing. Prints first what it will install.
+# deps.sh run|viewer|test|soak: installs the Debian packages that awtd (run), the viewer (viewer), the tests (test) and the
+# long tests (soak) need, where a command or header that they bring is missing. DEPS=never installs nothing. Prints first what it will install.
 set -eu
 cd "$(dirname "$0")/.."
 wanted=""
@@ -25,14 +25,17 @@ else
     wanted="$wanted libdraco-dev libtinygltf-dev"
 fi
 if [ "$1" != run ]; then
-    want clang has clang
-    want nlohmann-json3-dev has_header nlohmann/json.hpp
-    want libclang-rt-dev has_clang_runtime
     want nodejs has node
     want npm has npm
+    want emscripten has emcc
+fi
+if [ "$1" = test ] || [ "$1" = soak ]; then
+    want clang has clang
+    want chromium has chromium
+    want nlohmann-json3-dev has_header nlohmann/json.hpp
+    want libclang-rt-dev has_clang_runtime
     want python3 has python3
     want gcc-mingw-w64-x86-64 has x86_64-w64-mingw32-gcc
-    want emscripten has emcc
 fi
 if [ "$1" = soak ]; then
     want gcc-aarch64-linux-gnu has aarch64-linux-gnu-gcc
@@ -64,11 +67,20 @@ if [ -n "$wanted" ]; then
     DEBIAN_FRONTEND=noninteractive $root apt-get install -q -y --no-install-recommends $wanted
 fi
 
-if [ "$1" != run ] && ! cmp -s tests/node/package-lock.json tests/node/node_modules/.installed; then
+# npm_packages FOLDER PURPOSE: what its package-lock.json names, where that is not there yet.
+npm_packages() {
+    cmp -s "$1/package-lock.json" "$1/node_modules/.installed" && return
     if [ "${DEPS:-}" = never ]; then
-        [ -d tests/node/node_modules ] || echo "tests/node/node_modules is missing: the glTF checks will be skipped" >&2
+        [ -d "$1/node_modules" ] || echo "$1/node_modules is missing: there is no $2" >&2
     else
-        echo "installing npm packages for the glTF checks (tests/node/package-lock.json)"
-        (cd tests/node && npm ci --no-audit --no-fund --loglevel=error && cp package-lock.json node_modules/.installed)
+        echo "installing npm packages for $2 ($1/package-lock.json)"
+        (cd "$1" && npm ci --no-audit --no-fund --loglevel=error && cp package-lock.json node_modules/.installed)
     fi
+}
+if [ "$1" != run ]; then
+    npm_packages clients/web "the viewer"
+fi
+if [ "$1" = test ] || [ "$1" = soak ]; then
+    npm_packages tests/node "the glTF checks"
+    npm_packages tests/web "the tests in a browser"
 fi

@@ -11,6 +11,7 @@ import { readNumbers } from './delta.mjs';
 import * as document from './guides.mjs';
 
 const ALLOWED_M = 0.2e-3, ROUNDING_M = 2e-6;
+const GUIDES = 2; /* as in QUERY */
 const [wasm, folder] = process.argv.slice(2);
 if (!folder) {
   console.error('usage: node check_receiver.mjs RECEIVER.wasm FOLDER');
@@ -25,8 +26,8 @@ receiver._initialize();
 /** The bytes at an address of the receiver's memory, which may have moved since the last call. */
 const memory = (address, length) => new Uint8Array(receiver.memory.buffer, address, length);
 
-function whatFailed() {
-  const text = memory(receiver.receiver_error(), 240);
+function whatFailed(handle) {
+  const text = memory(receiver.receiver_error(handle), 240);
   return new TextDecoder().decode(text.subarray(0, text.indexOf(0)));
 }
 
@@ -39,12 +40,13 @@ function withBytes(bytes, use) {
   return result;
 }
 
-function readBinding(file) {
-  const binding = withBytes(readFileSync(file), receiver.receiver_binding);
-  if (!binding) {
-    throw new Error(`${file}: ${whatFailed()}`);
+/** A receiver for the frames of that binding. */
+function receiverOf(file) {
+  const handle = receiver.receiver_create();
+  if (!withBytes(readFileSync(file), (address, length) => receiver.receiver_bind(handle, address, length))) {
+    throw new Error(`${file}: ${whatFailed(handle)}`);
   }
-  return binding;
+  return handle;
 }
 
 function readFloats(file) {
@@ -53,13 +55,14 @@ function readFloats(file) {
 }
 
 /** `baseSequence` null: a frame for any viewer. */
-function receive(binding, bytes, baseSequence) {
-  if (!withBytes(bytes, (address, length) => (baseSequence === null ? receiver.receiver_frame(binding, address, length)
-    : receiver.receiver_numbers(binding, address, length, baseSequence)))) {
-    throw new Error(whatFailed());
+function receive(handle, bytes, baseSequence) {
+  if (!withBytes(bytes, (address, length) => (baseSequence === null
+    ? receiver.receiver_frame(handle, address, length, GUIDES, 0, 1n, 0n)
+    : receiver.receiver_numbers(handle, address, length, BigInt(baseSequence))))) {
+    throw new Error(whatFailed(handle));
   }
-  const floats = receiver.receiver_strands() * receiver.receiver_points() * 3;
-  return new Float32Array(receiver.memory.buffer, receiver.receiver_positions(), floats).slice();
+  const floats = receiver.receiver_strands(handle) * receiver.receiver_points(handle) * 3;
+  return new Float32Array(receiver.memory.buffer, receiver.receiver_positions(handle), floats).slice();
 }
 
 function distances(points, expected) {
@@ -73,10 +76,10 @@ function distances(points, expected) {
 }
 
 /** What to say of a frame; throws what is wrong with it. `frames`: those of numbers so far, by their sequence. */
-async function check(binding, described, frames, file) {
+async function check(handle, described, frames, file) {
   const bytes = readFileSync(file), expected = readFloats(`${file}.strands.f32`);
   const numbers = file.endsWith('.glb') ? null : await readNumbers(bytes, frames);
-  const begin = performance.now(), points = receive(binding, bytes, numbers && numbers.baseSequence), took = performance.now() - begin;
+  const begin = performance.now(), points = receive(handle, bytes, numbers && numbers.baseSequence), took = performance.now() - begin;
   if (points.length !== expected.length) {
     throw new Error(`${points.length} numbers, not ${expected.length}`);
   }
@@ -98,19 +101,19 @@ async function check(binding, described, frames, file) {
   if (numbers) {
     frames.set(numbers.sequence, numbers);
   }
-  const strands = receiver.receiver_strands(), each = receiver.receiver_points();
+  const strands = receiver.receiver_strands(handle), each = receiver.receiver_points(handle);
   return `${strands} strands of ${each} from ${bytes.length} bytes in ${took.toFixed(1)} ms, ` +
     `worst ${(worst * 1e3).toFixed(3)} mm, mean ${(mean * 1e3).toFixed(3)} mm`;
 }
 
 let passed = 0, failed = 0;
 for (const name of readdirSync(folder).filter((file) => file.endsWith('.awtb'))) {
-  const stem = name.slice(0, -'.awtb'.length), binding = readBinding(join(folder, name));
+  const stem = name.slice(0, -'.awtb'.length), handle = receiverOf(join(folder, name));
   const described = document.readBinding(readFileSync(join(folder, name))), frames = new Map();
   const files = readdirSync(folder).filter((other) => other.startsWith(`${stem}-`) && /\.(glb|whole|delta)$/.test(other));
   for (const file of files.sort()) { /* of each number the delta first, for which the frame before is still kept */
     try {
-      console.log(`ok   ${file}: ${await check(binding, described, frames, join(folder, file))}`);
+      console.log(`ok   ${file}: ${await check(handle, described, frames, join(folder, file))}`);
       passed++;
     } catch (error) {
       console.log(`FAIL ${file}: ${error.message}`);
