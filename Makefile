@@ -46,7 +46,7 @@ LIBCLIENT := $(B)/libawtclient.a
 LIBSERVER := $(B)/libawtserver.a
 PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-bench
 
-.PHONY: all help demo web test soak sheets bench format lint install clean deps deps-test deps-soak programs tests-binary
+.PHONY: all help demo web viewer test soak sheets bench format lint install clean deps deps-test deps-viewer deps-soak programs tests-binary
 .DELETE_ON_ERROR:
 
 all: programs $(B)/rooms.ok
@@ -61,6 +61,7 @@ tests-binary: $(B)/tests $(PROGRAMS)
 help:
 	@echo 'make demo      installs what is missing, builds, plays a leaning head for 10 s, leaves GLB files in build/demo'
 	@echo '               GROOM=FILE MOTION=FILE JOINT=NAME SCALE=S UP=y|z HEAD=x,y,z,r: your own hair and motion'
+	@echo 'make viewer    installs what is missing, builds, and shows hair in your browser: prints the address to open'
 	@echo 'make test      installs what is missing, builds, runs every test (DEPS=never: installs nothing)'
 	@echo 'make soak      the long tests (about half an hour on two cores): minutes of violent motion, TSan, same bits, fuzzing'
 	@echo 'make sheets    the pictures of README.md: every style (and real groom that is there) through the lean'
@@ -154,12 +155,18 @@ deps:
 	@DEPS='$(DEPS)' sh tests/deps.sh run
 deps-test:
 	@DEPS='$(DEPS)' sh tests/deps.sh test
+deps-viewer:
+	@DEPS='$(DEPS)' sh tests/deps.sh viewer
 deps-soak:
 	@DEPS='$(DEPS)' sh tests/deps.sh soak
 
 demo: deps
 	@$(MAKE) --no-print-directory programs config=release
 	@GROOM='$(GROOM)' MOTION='$(MOTION)' JOINT='$(JOINT)' SCALE='$(SCALE)' UP='$(UP)' HEAD='$(HEAD)' sh clients/demo.sh
+
+viewer: deps-viewer
+	@$(MAKE) --no-print-directory programs web config=release
+	@sh clients/web/viewer.sh
 
 test: deps-test
 	@sh tests/run.sh

@@ -15,11 +15,10 @@ const REQUEST_TIMEOUT_MS = 10000, HEARTBEAT_MS = 15000;
 
 const options = readOptions();
 const lists = await import(pathToFileURL(resolve(options.build, 'messages.mjs')));
-const pages = loadPages(options.build), codec = makeCodec(lists), shown = new Shown();
+const pages = loadPages(options.build), codec = makeCodec(lists), access = new Access(), shown = new Shown(access.tokens.view);
 const daemon = { ...options.connect, readToken: options.readToken, codec };
 const sockets = new WebSocketServer({ noServer: true, maxPayload: HEADER_SIZE + GREATEST_REQUEST, perMessageDeflate: false,
   handleProtocols: () => SUBPROTOCOL });
-let access = null;
 
 const server = createServer({ headersTimeout: REQUEST_TIMEOUT_MS, requestTimeout: REQUEST_TIMEOUT_MS, maxHeaderSize: 8192 },
   (request, response) => servePage(pages, access, () => ({ ok: true, browsers: sockets.clients.size }), request, response));
@@ -64,7 +63,7 @@ server.on('error', (error) => {
 
 server.listen(options.listen, () => {
   const { host } = options.listen, { port } = server.address(), own = `http://${host.includes(':') ? `[${host}]` : host}:${port}`;
-  access = new Access([own, `http://localhost:${port}`, ...options.origins]);
+  access.origins = new Set([own, `http://localhost:${port}`, ...options.origins]);
   const page = options.origins[0] ?? own;
   console.log(`listening on ${host}:${port}\ndrive: ${page}/#token=${access.tokens.drive}\nview: ${page}/#token=${access.tokens.view}`);
 });

@@ -1,38 +1,8 @@
 // body.mjs: head and body as one smooth surface: tapered capsules joined softly, found by sphere tracing.
+import { colourAt, distance, faceParts, PAINT, shapeOf, SKIN } from '../../clients/web/page/body-shape.js';
 import { add, dot, rotate, scale, sub, unit } from './vector.mjs';
 
-const JOIN = 0.02; /* metres over which parts melt into each other: more, and the body swells through hair that lies on it */
-const SKIN = [0.55, 0.33, 0.23], SHIRT = [0.1, 0.12, 0.17], EYE = [0.85, 0.83, 0.8], IRIS = [0.05, 0.035, 0.03],
-  LIP = [0.42, 0.16, 0.13], BROW = [0.1, 0.06, 0.04];
-
-/** The head and body that are drawn where no colliders are given: awtd's own default obstacles. */
-export const DEFAULT_COLLIDERS = [
-  { frame: 'head', a: [0, 0, 0], b: [0, 0, 0], radius_a: 0.095, radius_b: 0.095 },
-  { frame: 'head', a: [0, -0.03, 0.035], b: [0, -0.075, 0.045], radius_a: 0.07, radius_b: 0.045 },
-  { frame: 'body', a: [0, -0.09, -0.015], b: [0, -0.2, -0.02], radius_a: 0.055, radius_b: 0.055 },
-  { frame: 'body', a: [-0.16, -0.27, -0.03], b: [0.16, -0.27, -0.03], radius_a: 0.07, radius_b: 0.07 },
-  { frame: 'body', a: [0, -0.36, -0.02], b: [0, -0.62, -0.02], radius_a: 0.13, radius_b: 0.13 },
-  { frame: 'body', a: [0, -0.25, -0.025], b: [0, -0.36, -0.02], radius_a: 0.08, radius_b: 0.13 },
-];
-
-/** Nose and ears for a head of radius r, so that one sees where the front is. */
-function faceParts(r) {
-  const part = (a, b, radius_a, radius_b) => (
-    { frame: 'head', a: scale(a, r), b: scale(b, r), radius_a: radius_a * r, radius_b: radius_b * r, join: 0.1 * r });
-  return [
-    part([0, -0.05, 0.95], [0, -0.3, 1.14], 0.07, 0.12),
-    part([0.97, -0.05, -0.05], [0.97, -0.3, 0.0], 0.16, 0.1),
-    part([-0.97, -0.05, -0.05], [-0.97, -0.3, 0.0], 0.16, 0.1),
-  ];
-}
-
-/** What is painted on the face: strokes from a to b seen from the front, in head radii, the last on top. */
-const PAINT = [-1, 1].flatMap((side) => [
-  { a: [side * 0.27, -0.06], b: [side * 0.42, -0.055], radius: 0.05, colour: EYE },
-  { a: [side * 0.345, -0.055], b: [side * 0.345, -0.055], radius: 0.048, colour: IRIS },
-  { a: [side * 0.2, 0.135], b: [side * 0.47, 0.125], radius: 0.024, colour: BROW },
-  { a: [0, -0.665], b: [side * 0.19, -0.635], radius: 0.035, colour: LIP },
-]);
+export { DEFAULT_COLLIDERS } from '../../clients/web/page/body-shape.js';
 
 function paintAt(face, point) {
   const [x, y, z] = rotate(face.toHead, point).map((v) => v / face.radius);
@@ -54,55 +24,19 @@ export function placeBody(colliders, head, body) {
   const parts = [...colliders, ...(radius > 0 ? faceParts(radius) : [])].map((part) => {
     const pose = part.frame === 'head' ? head : body;
     const place = (p) => add(rotate(pose.orientation, p), sub(pose.position, head.position));
-    const a = place(part.a), along = sub(place(part.b), a), long = Math.hypot(...along);
-    const growth = long > 0 ? (part.radius_b - part.radius_a) / long : 0;
-    const colour = part.frame === 'body' && part.a[1] < -0.21 ? SHIRT : SKIN;
-    const join = part.join ?? JOIN;
+    const shape = shapeOf(part, place(part.a), place(part.b));
     return {
-      a, axis: unit(along), long, colour, join, k: Math.max(-0.99, Math.min(0.99, growth)), radius: part.radius_a,
-      centre: add(a, scale(along, 0.5)), reach: long / 2 + Math.max(part.radius_a, part.radius_b) + join,
+      ...shape, centre: add(shape.a, scale(shape.axis, shape.long / 2)),
+      reach: shape.long / 2 + Math.max(part.radius_a, part.radius_b) + shape.join,
     };
   });
   const [x, y, z, w] = head.orientation;
   return { parts, face: radius > 0 ? { radius, toHead: [-x, -y, -z, w] } : null };
 }
 
-/** Distance to a tapered capsule: that to the nearest of the balls that roll along it (k: their growth a metre). */
-function distanceTo(part, px, py, pz) {
-  const { a, axis, long, k } = part;
-  const x = px - a[0], y = py - a[1], z = pz - a[2];
-  const along = x * axis[0] + y * axis[1] + z * axis[2];
-  const aside = Math.sqrt(Math.max(0, x * x + y * y + z * z - along * along));
-  const at = Math.max(0, Math.min(long, along + k * aside / Math.sqrt(1 - k * k)));
-  return Math.sqrt(aside * aside + (along - at) * (along - at)) - part.radius - k * at;
-}
-
-/** Distance to the whole surface: each part joined softly to those before it. */
-function distance(parts, x, y, z) {
-  let d = distanceTo(parts[0], x, y, z);
-  for (let i = 1; i < parts.length; i++) {
-    const e = distanceTo(parts[i], x, y, z), k = parts[i].join;
-    const h = Math.max(k - Math.abs(d - e), 0) / k;
-    d = Math.min(d, e) - h * h * k * 0.25;
-  }
-  return d;
-}
-
 function normalAt(parts, [x, y, z]) {
   const e = 4e-4, d = distance(parts, x, y, z);
   return unit([distance(parts, x + e, y, z) - d, distance(parts, x, y + e, z) - d, distance(parts, x, y, z + e) - d]);
-}
-
-function colourAt(parts, [x, y, z]) {
-  let nearest = Infinity, colour = SKIN;
-  for (const part of parts) {
-    const d = distanceTo(part, x, y, z);
-    if (d < nearest) {
-      nearest = d;
-      colour = part.colour;
-    }
-  }
-  return colour;
 }
 
 /** How open the surface is to the air around: less in its folds. */

@@ -40,7 +40,7 @@ export async function test(name, run) {
   console.log(`${sound ? 'ok  ' : 'FAIL'} ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s)`);
 }
 
-/** Waits for what `look` returns to be true; it may return a promise. */
+/** Waits for what `look` returns to be true; it may return a promise. `text`: what for, or a function that says it. */
 export async function until(look, text) {
   const end = Date.now() + WAIT_MS;
   for (;;) {
@@ -49,7 +49,7 @@ export async function until(look, text) {
       return seen;
     }
     if (Date.now() > end) {
-      throw new Error(`waited in vain: ${text}`);
+      throw new Error(`waited in vain: ${typeof text === 'function' ? await text() : text}`);
     }
     await new Promise((resolve) => setTimeout(resolve, 30));
   }

@@ -12,8 +12,8 @@ const GATEWAY_TYPES = new Set(['hello', 'auth', 'resume']);
 const same = (a, b) => a.length === b.length && timingSafeEqual(Buffer.from(a), Buffer.from(b));
 
 export class Access {
-  constructor(origins) {
-    this.origins = new Set(origins);
+  constructor() {
+    this.origins = new Set();
     this.tokens = { drive: randomBytes(16).toString('hex'), view: randomBytes(16).toString('hex') };
   }
 

@@ -1,8 +1,9 @@
 // shown.mjs: the one forest that the viewers of a gateway look at. A page that drives says which (as text, beside the binary
 // messages of the protocol); all others are told, with the token that their scope may have, and again when it changes.
 //
-// In: {"show": {"forest", "drive", "view", "about"}}, {"body": [7 numbers]}.
-// Out: {"shown": {"forest", "token", "driven", "about"} or null}, {"body": [7 numbers]}.
+// In: {"show": {"forest", "drive", "view", "about"}}, {"wheel": true} from who drives that forest from now on, {"body": [7 numbers]}.
+// Out: {"shown": {"forest", "token", "driven", "about"} or null, "scope": "drive" or "view", "viewToken" for who drives},
+// {"body": [7 numbers]}.
 
 const TEXT_MAX = 8192;
 const isToken = (token) => typeof token === 'string' && /^[0-9a-f]{32}$/.test(token);
@@ -10,7 +11,9 @@ const isForest = (forest) => typeof forest === 'string' && /^[0-9]{1,20}$/.test(
 const isPose = (pose) => Array.isArray(pose) && pose.length === 7 && pose.every(Number.isFinite);
 
 export class Shown {
-  constructor() {
+  /** `viewToken`: the gateway's, for links that a driving page gives away. */
+  constructor(viewToken) {
+    this.viewToken = viewToken;
     this.bridges = new Set();
     this.now = null;
     this.driver = null;
@@ -43,6 +46,9 @@ export class Shown {
       this.now = { forest, drive, view, about };
       this.driver = bridge;
       this.tellOthers(bridge);
+    } else if (bridge.scope === 'drive' && this.now && said?.wheel === true) {
+      this.driver = bridge;
+      this.tellOthers(bridge);
     } else if (bridge === this.driver && isPose(said?.body)) {
       this.others(bridge).filter((other) => other.browser.bufferedAmount === 0).forEach((other) => other.sendOwn(JSON.stringify({ body: said.body }), false));
     } else if (bridge.scope !== 'drive' || !isPose(said?.body)) { /* a page that has just lost the wheel may still send poses */
@@ -62,7 +68,8 @@ export class Shown {
     const { now } = this;
     const shown = now && { forest: now.forest, token: now[bridge.scope], driven: this.driver !== null, about: now.about };
     if (bridge.socket) {
-      bridge.sendOwn(JSON.stringify({ shown }), false);
+      const more = bridge.scope === 'drive' ? { viewToken: this.viewToken } : {};
+      bridge.sendOwn(JSON.stringify({ shown, scope: bridge.scope, ...more }), false);
     }
   }
 }

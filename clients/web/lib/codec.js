@@ -33,7 +33,8 @@ class Writer {
   }
 
   raw(bytes) {
-    this.bytes.set(bytes, this.room(bytes.length));
+    const at = this.room(bytes.length); /* makes `bytes` anew where it is too short */
+    this.bytes.set(bytes, at);
   }
 }
 

@@ -1,0 +1,195 @@
+// test_viewer.mjs BUILD [NAME]: the viewer in a real browser: counts and pixels, never frame rates.
+import { createServer } from 'node:net';
+import { countDifferent, countPixels, openBrowser, View } from './browser.mjs';
+import { check, equal, finish, skip, startAwtd, startGateway, test, until } from './harness.mjs';
+import { codec } from './socket.mjs';
+
+const STRANDS = 600, { browser, why } = await openBrowser();
+if (!browser) {
+  skip(14, why);
+  await finish();
+}
+let awtd = await startAwtd();
+const gateway = await startGateway(awtd.port), view = await View.open(browser, gateway.drive);
+await view.untilLive();
+await view.hold();
+
+/** Dark, warm, and there: hair of the brown style; skin is lighter, the shirt blue. */
+const hairColour = (r, g, b, a) => a > 200 && r > b + 8 && r > g && r < 150 && b < 80;
+
+await test('viewer_loads_without_a_complaint', async () => {
+  equal(view.errors.join('; '), '', 'the browser complains');
+  equal((await view.knows()).driving, true, 'it drives');
+  equal(await view.page.evaluate(() => getComputedStyle(document.getElementById('face')).display), 'none', 'no card over the hair');
+});
+
+await test('viewer_draws_hair_where_the_head_is', async () => {
+  const bald = await view.picture(false), haired = await view.picture(true), { width, height } = bald;
+  const head = (x, y) => Math.abs(x - width / 2) < 0.16 * width && y < 0.62 * height;
+  const before = countPixels(bald, (r, g, b, a, x, y) => head(x, y) && hairColour(r, g, b, a));
+  const after = countPixels(haired, (r, g, b, a, x, y) => head(x, y) && hairColour(r, g, b, a));
+  check(after > before + 1500, `${after} pixels of hair colour with hair, ${before} without`);
+  const sides = countPixels(haired, (r, g, b, a, x) => a > 0 && (x < 0.2 * width || x > 0.8 * width));
+  check(sides < 0.3 * width * height, `${sides} pixels are drawn far from the head`);
+});
+
+await test('viewer_has_all_the_strands_of_the_forest', async () => {
+  const known = await view.knows(), asked = await view.page.evaluate(() => viewer.hair.forest.strands);
+  equal(known.strands, STRANDS, 'strands on the page');
+  equal(asked, STRANDS, 'strands of the forest');
+  const triangles = await view.page.evaluate(() => {
+    const { hair } = viewer.hair;
+    return { drawn: hair.geometry.index.count / 3, pieces: hair.uniforms.pieces.value, points: hair.points };
+  });
+  equal(triangles.drawn, 2 * STRANDS * (triangles.points - 1) * triangles.pieces, 'triangles');
+});
+
+await test('viewer_draws_strands_as_it_draws_guides', async () => {
+  const guides = await view.picture();
+  for (const [level, strands] of [['strands full', STRANDS], ['strands fifth', STRANDS / 5]]) {
+    await view.page.evaluate((name) => viewer.changed('level', name), level);
+    await view.untilIt((known) => known.frames > 0 && known.strands === strands, level);
+    const apart = countDifferent(guides, await view.picture()), drawn = countPixels(guides, hairColour);
+    check(level === 'strands fifth' || apart < 0.15 * drawn, `${level}: ${apart} pixels of ${drawn} differ`);
+  }
+  await view.steps(3);
+  await view.page.evaluate(() => viewer.changed('level', 'strands full'));
+  await view.untilIt((known) => known.frames > 0 && known.strands === STRANDS, 'all strands again');
+  await view.page.mouse.move(200, 200);
+  await until(async () => {
+    await view.steps(1);
+    return (await view.knows()).delta;
+  }, 'strands as deltas');
+  await view.page.evaluate(() => viewer.changed('level', 'guides'));
+  await view.untilIt((known) => known.frames > 0, 'guides again');
+});
+
+await test('viewer_head_follows_the_mouse', async () => {
+  const before = await view.picture(), turn = () => view.page.evaluate(() => viewer.hair.object.quaternion.y);
+  await view.page.mouse.move(600, 180);
+  await view.steps(30);
+  check(await turn() > 0.2, `the head is turned by ${await turn()}`);
+  const apart = countDifferent(before, await view.picture());
+  check(apart > 1500, `${apart} pixels changed`);
+});
+
+await test('viewer_splits_more_below_a_lower_threshold', async () => {
+  const shaken = async (threshold) => {
+    await view.page.evaluate(async (value) => {
+      const slider = document.getElementById('split_threshold');
+      slider.value = 1000 * Math.log(value / 0.01) / Math.log(1000);
+      slider.dispatchEvent(new Event('input'));
+      await viewer.changed('motion', 'shake');
+    }, threshold);
+    await view.steps(90);
+    return (await view.knows()).active;
+  };
+  const rarely = await shaken(10), often = await shaken(0.01);
+  check(often > 1.5 * rarely, `${often} active nodes at 0.01, ${rarely} at 10`);
+});
+
+await test('viewer_shows_the_wisp_tree', async () => {
+  await view.page.evaluate(() => viewer.changed('tree', true));
+  await until(() => view.page.evaluate(() => viewer.hair.nodes.visible && viewer.hair.nodes.count > 0), 'the tree');
+  const { nodes, active } = await view.page.evaluate(() => ({ nodes: viewer.hair.nodes.count, active: viewer.hair.stats.active }));
+  equal(nodes, active, 'nodes that are drawn');
+  const bright = countPixels(await view.picture(), (r, g, b) => r > 200 && g > 60 && g < 130 && b < 100);
+  check(bright > 150, `${bright} pixels of the first level's colour`);
+  await view.page.evaluate(() => viewer.changed('tree', false));
+  equal(view.errors.join('; '), '', 'the browser complains');
+});
+
+await test('viewer_on_a_second_page_shows_the_same_hair', async () => {
+  const second = await View.open(browser, gateway.view, { more: '&smooth=0&bare=1' });
+  await second.untilLive();
+  const [driver, viewer] = [await view.knows(), await second.knows()];
+  equal(viewer.forest, driver.forest, 'the forest');
+  equal(viewer.strands, STRANDS, 'its strands');
+  equal(viewer.driving, false, 'it drives');
+  await view.steps(5);
+  const { sequence } = await view.knows();
+  await second.untilIt((known) => known.sequence === sequence, 'the step of the other page');
+  equal(second.errors.join('; '), '', 'the browser complains');
+  await second.page.close();
+});
+
+await test('viewer_explains_files_that_it_cannot_use', async () => {
+  const said = async (name, bytes, words) => {
+    await view.drop(name, bytes);
+    await until(async () => (await view.text('messages')).includes(words), `"${words}" about ${name}; it says: ${await view.text('messages')}`);
+  };
+  await said('cat.png', Buffer.from('\x89PNG'), 'cat.png: it is neither hair');
+  await said('walk.bvh', Buffer.from('HIERARCHY\nROOT Hips {'), 'walk.bvh: ');
+  await said('short.hair', Buffer.from('HAIR\x01\x00\x00\x00'), 'short.hair: ');
+  await view.untilLive(); /* of the style again */
+});
+
+await test('viewer_simulates_a_dropped_file', async () => {
+  await view.drop('grown.hair', grownHair(400, 12));
+  await until(async () => (await view.text('messages')).includes('grown.hair: 400 strands'), () => view.text('messages'));
+  await view.untilIt((known) => known.state === 'live' && known.strands === 400, 'the hair of the file');
+  await view.drop('still.csv', Buffer.from('Timestamp,x,y,z,qx,qy,qz,qw\n0.0,0,0,0,0,0,0,1\n0.5,0.1,0,0,0,0.6,0,0.8\n1.0,0,0,0,0,0,0,1\n'));
+  await until(async () => (await view.text('messages')).includes('head-pose log'), () => view.text('messages'));
+});
+
+await test('viewer_survives_a_restart_of_awtd', async () => {
+  const { port } = awtd;
+  await awtd.stop();
+  await view.untilIt(({ state }) => state === 'lost', 'that it is lost');
+  check((await view.text('face-title')).includes('lost'), await view.text('face-title'));
+  awtd = await startAwtd(port);
+  await view.untilIt((known) => known.state === 'live' && known.driving && known.strands === 400, 'the hair again');
+  await view.steps(2);
+});
+
+await test('viewer_without_the_token_says_so', async () => {
+  const stranger = await View.open(browser, `${gateway.origin}/#token=${'0'.repeat(32)}`);
+  await stranger.untilIt(({ state }) => state === 'lost', 'that it is refused');
+  check((await stranger.text('face-text')).includes('wrong token'), await stranger.text('face-text'));
+  await stranger.page.close();
+});
+
+await test('viewer_of_another_origin_is_refused', async () => {
+  const page = await browser.newPage();
+  await page.goto('about:blank');
+  const opened = await page.evaluate(({ port, token }) => new Promise((resolve) => {
+    const socket = new WebSocket(`ws://127.0.0.1:${port}/awt`, ['awt.1', `awt.token.${token}`]);
+    socket.onopen = () => resolve(true);
+    socket.onerror = () => resolve(false);
+  }), { port: gateway.port, token: gateway.tokens.drive });
+  equal(opened, false, 'it got in');
+  await page.close();
+});
+
+await test('viewer_says_that_a_server_lies', async () => {
+  const nonsense = codec.encode('list_styles_reply', {}, { request: 1n });
+  nonsense[16] = 9; /* styles that do not come */
+  const liar = createServer((socket) => {
+    socket.on('error', () => {});
+    socket.write(codec.encode('welcome', { version: 1, greatest_payload: 1 << 21, server: 'liar' }));
+    socket.on('data', () => socket.write(nonsense));
+  });
+  await new Promise((resolve) => liar.listen(0, '127.0.0.1', resolve));
+  const before = await startGateway(liar.address().port), lied = await View.open(browser, before.drive);
+  await lied.untilIt(({ state, reason }) => state === 'lost' && reason.includes('does not make sense'), 'that it makes no sense');
+  await lied.page.close();
+  liar.close();
+});
+
+/** A cyHair file: strands on a ball of 10 cm, each hanging from its root. */
+function grownHair(strands, points) {
+  const bytes = Buffer.alloc(128 + 12 * strands * points);
+  bytes.write('HAIR');
+  [strands, strands * points, 2, points - 1].forEach((number, i) => bytes.writeUInt32LE(number, 4 + 4 * i));
+  for (let s = 0, at = 128; s < strands; s++) {
+    const y = 0.95 - 1.1 * s / strands, ring = Math.sqrt(1 - y * y), turn = s * 2.399963;
+    for (let i = 0; i < points; i++, at += 12) {
+      const out = 10 + 0.12 * i;
+      [ring * Math.cos(turn) * out, y * 10 - 1.2 * i * (i / points), ring * Math.sin(turn) * out].forEach((value, k) => bytes.writeFloatLE(value, at + 4 * k));
+    }
+  }
+  return bytes;
+}
+
+await browser.close();
+await finish();
