@@ -133,12 +133,13 @@ await test('viewer_simulates_a_dropped_file', async () => {
 });
 
 await test('viewer_survives_a_restart_of_awtd', async () => {
-  const { port } = awtd;
+  const { port } = awtd, before = await view.knows();
   await awtd.stop();
   await view.untilIt(({ state }) => state === 'lost', 'that it is lost');
   check((await view.text('face-title')).includes('lost'), await view.text('face-title'));
   awtd = await startAwtd(port);
   await view.untilIt((known) => known.state === 'live' && known.driving && known.strands === 400, 'the hair again');
+  check((await view.knows()).time_us >= before.time_us, 'the hair goes on where it was, for awtd keeps forests');
   await view.steps(2);
 });
 

@@ -17,7 +17,7 @@ export class Bridge {
     this.own = [];
     browser.pause(); /* nothing is read before there is somebody to send it to */
     browser.on('message', (data, isBinary) => (isBinary ? this.fromBrowser(data) : this.onText(data)));
-    browser.on('close', () => this.socket?.end());
+    browser.on('close', () => this.socket?.end(codec.encode('bye', { reason: 'the browser is gone' }, { required: false })));
     browser.on('error', () => this.socket?.destroy());
     this.opened = this.open(daemon);
   }
@@ -30,7 +30,7 @@ export class Bridge {
         return;
       }
       this.socket = socket;
-      this.sendOwn(this.codec.encode('welcome', { ...welcome, auth_required: 0, nonce: undefined }), true);
+      this.sendOwn(this.codec.encode('welcome', { ...welcome, auth_required: 0, nonce: undefined, session: undefined }), true);
       socket.on('data', (bytes) => this.fromDaemon(bytes));
       socket.on('drain', () => this.browser.resume());
       socket.on('close', () => this.end(TRY_AGAIN, 'awtd ended the connection'));

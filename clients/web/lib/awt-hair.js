@@ -121,7 +121,7 @@ export class AwtHair extends EventTarget {
     const turn = this.turn;
     try {
       await this.decoder.ask('reset');
-      const forest = wanted.recipe ? await this.make(wanted.recipe) : await this.open(wanted);
+      const forest = wanted.recipe ? wanted.made = await this.makeOrReopen(wanted) : await this.open(wanted);
       if (turn !== this.turn) {
         return null;
       }
@@ -134,8 +134,8 @@ export class AwtHair extends EventTarget {
       if (turn === this.turn && this.connection.isIn) {
         this.wanted = null;
         this.enter('empty', error.message);
-      } else if (GONE.includes(error.code)) {
-        this.wanted = null; /* the daemon closes the connection after a wrong token */
+      } else if (GONE.includes(error.code)) { /* the daemon closes the connection after a wrong token */
+        this.wanted = wanted.recipe ? { recipe: wanted.recipe } : null;
       }
       throw error;
     }
@@ -150,6 +150,18 @@ export class AwtHair extends EventTarget {
     const made = await this.connection.ask('create', { style: 'long', ...recipe, ...source, params, head, body, progress: 1 },
       { progress: ({ stage, share }) => this.enter('busy', stages[stage] ?? 'working', share || null) });
     return { ...made, handle: made.forest, mayDrive: true, time_us: BigInt(recipe.time_us ?? 0), driveToken: hexOf(made.drive_token), viewToken: hexOf(made.view_token) };
+  }
+
+  /** What was made before a connection was lost may live on. */
+  async makeOrReopen({ recipe, made }) {
+    try {
+      return made ? { ...made, ...await this.open({ forest: made.handle, token: made.driveToken }), colliders: made.colliders } : await this.make(recipe);
+    } catch (error) {
+      if (made && error.code === 'NO_FOREST') {
+        return this.make(recipe);
+      }
+      throw error;
+    }
   }
 
   async open({ forest, token }) {
