@@ -34,9 +34,10 @@ SRC_clients := $(filter-out clients/awtctl% clients/web/%,$(wildcard clients/*.c
 SRC_awtctl := $(wildcard clients/awtctl*.c)
 SRC_unit := tests/main.c $(wildcard tests/unit/*.c tests/e2e/*.c)
 SRC_bench := $(wildcard tests/bench/*.c)
+SRC_relay := $(wildcard tests/relay/*.c)
 SRC_fuzz := $(wildcard tests/fuzz/*.c)
 HEADERS := $(wildcard $(foreach r,core proto server clients tests,$(r)/*.h $(r)/*/*.h))
-SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_unit) $(SRC_bench) $(SRC_fuzz)
+SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_unit) $(SRC_bench) $(SRC_relay) $(SRC_fuzz)
 
 , := ,
 objects = $(patsubst %,$(B)/obj/%.o,$(1))
@@ -56,7 +57,7 @@ ifeq ($(config),release)
 	@ln -sf release/awtd release/awtctl release/awt-bench build/
 endif
 
-tests-binary: $(B)/tests $(PROGRAMS)
+tests-binary: $(B)/tests $(B)/awt-relay $(PROGRAMS)
 
 help:
 	@echo 'make demo      installs what is missing, builds, plays a leaning head for 10 s, leaves GLB files in build/demo'
@@ -71,13 +72,15 @@ help:
 $(B)/awtd: $(B)/obj/server/main.c.o $(LIBSERVER) $(LIBAWT) $(LIBPROTO)
 $(B)/awtctl: $(call objects,$(SRC_awtctl)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
-$(B)/tests: $(call objects,$(SRC_unit)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(B)/tests: $(call objects,$(SRC_unit) tests/relay/lane.c) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 # The tests count what the heap is asked for (tests/unit/test_allocation.c): the linker leads these calls there.
 $(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_alloc posix_memalign free)
+# A bad line for the tests to put between client and daemon.
+$(B)/awt-relay: $(call objects,$(SRC_relay)) $(LIBAWT)
 # What reads bytes from outside, under libFuzzer: config=fuzz CC=clang CXX=clang++ (tests/soak.sh runs it).
 $(B)/fuzz: $(call objects,$(SRC_fuzz) $(addprefix tests/unit/,proto_fill.c server_fixture.c interleaving.c interleaving_actor.c)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/fuzz: WRAP := -fsanitize=fuzzer
-$(PROGRAMS) $(B)/tests $(B)/fuzz:
+$(PROGRAMS) $(B)/tests $(B)/awt-relay $(B)/fuzz:
 	@echo "  LD   $@"
 	$(Q)$(CXX) $(FLAGS) $(WRAP) $(LDFLAGS) -o $@ $^ $(LDLIBS_ALL)
 

@@ -53,6 +53,24 @@ static bool read_address(int from, char *address, size_t size)
     return true;
 }
 
+/* Starts a program that says where it listens. */
+static bool spawn(const char *const *all, pid_t *pid, char *address, size_t size)
+{
+    int out[2];
+    if (pipe(out) != 0) {
+        return false;
+    }
+    *pid = fork();
+    if (*pid == 0) {
+        close(out[0]);
+        run_daemon(all[0], out[1], (char *const *)(uintptr_t)all);
+    }
+    close(out[1]);
+    bool up = *pid > 0 && read_address(out[0], address, size);
+    close(out[0]);
+    return up;
+}
+
 bool daemon_start(daemon_process *daemon, int workers, const char *const *arguments)
 {
     memset(daemon, 0, sizeof *daemon);
@@ -70,19 +88,24 @@ bool daemon_start(daemon_process *daemon, int workers, const char *const *argume
     for (; arguments && *arguments && used + 1 < sizeof all / sizeof all[0]; arguments++) {
         all[used++] = *arguments;
     }
-    int out[2];
-    if (pipe(out) != 0) {
-        return false;
+    return spawn(all, &daemon->pid, daemon->address, sizeof daemon->address);
+}
+
+bool line_start(line_process *line, const char *target, const char *delay_ms, const char *jitter_ms, const char *rate)
+{
+    char program[1024];
+    snprintf(program, sizeof program, "%s/awt-relay", check_build_directory());
+    const char *const all[] = {program,    "--connect", target,   "--delay", delay_ms,
+                               "--jitter", jitter_ms,   "--rate", rate,      NULL};
+    return spawn(all, &line->pid, line->address, sizeof line->address);
+}
+
+void line_stop(line_process *line)
+{
+    if (line->pid > 0) {
+        kill(line->pid, SIGTERM);
+        waitpid(line->pid, NULL, 0);
     }
-    daemon->pid = fork();
-    if (daemon->pid == 0) {
-        close(out[0]);
-        run_daemon(program, out[1], (char *const *)all);
-    }
-    close(out[1]);
-    bool up = daemon->pid > 0 && read_address(out[0], daemon->address, sizeof daemon->address);
-    close(out[0]);
-    return up;
 }
 
 int daemon_stop(daemon_process *daemon)

@@ -19,6 +19,17 @@ bool daemon_start(daemon_process *daemon, int workers, const char *const *argume
 /* Sends SIGTERM and waits. The exit status; -1 if it did not exit by itself within 20 s (then it is killed). */
 int daemon_stop(daemon_process *daemon);
 
+/* A bad line to a daemon: awt-relay of the same build. Who connects to `address` gets there with that delay (both ways
+ * each), jitter and bytes a second ("0": no limit). */
+typedef struct line_process {
+    pid_t pid;
+    char address[128];
+} line_process;
+
+bool line_start(line_process *line, const char *target, const char *delay_ms, const char *jitter_ms, const char *rate);
+/* Accepts a line that did not start. */
+void line_stop(line_process *line);
+
 /* A client of it, or NULL after a failed check. */
 awtclient *daemon_client(const daemon_process *daemon);
 /* A bare connected socket, or -1. */
