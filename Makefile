@@ -30,14 +30,15 @@ INC_tests := -Itests -Iserver -Iclients -Icore -Iproto -I$(B)
 SRC_core := $(wildcard core/*/*.c core/*/*.cc)
 SRC_proto := $(wildcard proto/*.c)
 SRC_server := $(wildcard server/*.c)
-SRC_clients := $(filter-out clients/awtctl% clients/web/%,$(wildcard clients/*.c clients/*/*.c))
+SRC_clients := $(filter-out clients/awtctl% clients/load/% clients/web/%,$(wildcard clients/*.c clients/*/*.c))
 SRC_awtctl := $(wildcard clients/awtctl*.c)
+SRC_load := $(wildcard clients/load/*.c)
 SRC_unit := tests/main.c $(wildcard tests/unit/*.c tests/e2e/*.c)
 SRC_bench := $(wildcard tests/bench/*.c)
 SRC_relay := $(wildcard tests/relay/*.c)
 SRC_fuzz := $(wildcard tests/fuzz/*.c)
 HEADERS := $(wildcard $(foreach r,core proto server clients tests,$(r)/*.h $(r)/*/*.h))
-SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_unit) $(SRC_bench) $(SRC_relay) $(SRC_fuzz)
+SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_load) $(SRC_unit) $(SRC_bench) $(SRC_relay) $(SRC_fuzz)
 
 , := ,
 objects = $(patsubst %,$(B)/obj/%.o,$(1))
@@ -45,16 +46,16 @@ LIBAWT := $(B)/libawt.a
 LIBPROTO := $(B)/libawtproto.a
 LIBCLIENT := $(B)/libawtclient.a
 LIBSERVER := $(B)/libawtserver.a
-PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-bench
+PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-load $(B)/awt-bench
 
-.PHONY: all help demo web viewer test soak sheets bench format lint install clean deps deps-test deps-viewer deps-soak programs tests-binary
+.PHONY: all help demo web viewer test soak sheets bench bench-service format lint install clean deps deps-test deps-viewer deps-soak programs tests-binary
 .DELETE_ON_ERROR:
 
 all: programs $(B)/rooms.ok
 
 programs: $(PROGRAMS)
 ifeq ($(config),release)
-	@ln -sf release/awtd release/awtctl release/awt-bench build/
+	@ln -sf release/awtd release/awtctl release/awt-load release/awt-bench build/
 endif
 
 tests-binary: $(B)/tests $(B)/awt-relay $(PROGRAMS)
@@ -67,12 +68,14 @@ help:
 	@echo 'make soak      the long tests (about half an hour on two cores): minutes of violent motion, TSan, same bits, fuzzing'
 	@echo 'make sheets    the pictures of README.md: every style (and real groom that is there) through the lean'
 	@echo 'make all       builds; config=debug|release|asan|tsan|coverage|fuzz, native=1, CC=clang CXX=clang++, V=1'
+	@echo 'make bench-service  loads awtd and a bare poll() server in turns, and compares them with the aims (about ten minutes)'
 	@echo 'make bench format lint install clean'
 
 $(B)/awtd: $(B)/obj/server/main.c.o $(LIBSERVER) $(LIBAWT) $(LIBPROTO)
 $(B)/awtctl: $(call objects,$(SRC_awtctl)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(B)/awt-load: $(call objects,$(SRC_load)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
-$(B)/tests: $(call objects,$(SRC_unit) tests/relay/lane.c) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(B)/tests: $(call objects,$(SRC_unit) tests/relay/lane.c $(filter-out clients/load/awt_load.c,$(SRC_load))) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 # The tests count what the heap is asked for (tests/unit/test_allocation.c): the linker leads these calls there.
 $(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_alloc posix_memalign free)
 # A bad line for the tests to put between client and daemon.
@@ -150,8 +153,8 @@ $(B)/test_list.h: $(SRC_unit)
 $(B)/obj/tests/main.c.o: $(B)/test_list.h
 
 # The header table, checked on what the compiler really read.
-$(B)/rooms.ok: tests/lint/rooms.awk $(call objects,$(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl))
-	@awk -f tests/lint/rooms.awk $(patsubst %,$(B)/obj/%.d,$(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl))
+$(B)/rooms.ok: tests/lint/rooms.awk $(call objects,$(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_load))
+	@awk -f tests/lint/rooms.awk $(patsubst %,$(B)/obj/%.d,$(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_load))
 	@touch $@
 
 deps:
@@ -183,6 +186,9 @@ sheets: deps-test
 
 bench: programs
 	$(B)/awt-bench
+
+bench-service: programs
+	@sh tests/bench/service.sh $(B)
 
 format:
 	$(Q)clang-format -i $(SRC_ALL) $(HEADERS)

@@ -1,0 +1,153 @@
+#!/bin/sh
+# service.sh: what the service is to reach, measured: awtd beside a bare poll() server in the same run, so that every
+# figure is a ratio. Prints a table of what was seen, what is aimed at, and whether it was met. It judges nothing else: its
+# exit code is 0 unless a measurement failed. Usage: service.sh [FOLDER OF THE PROGRAMS]. SECONDS_EACH (10): of awtd in each
+# run, and as long of the bare server; ONLY=N: point N alone.
+set -u
+cd "$(dirname "$0")/../.."
+build=${1:-build/release}
+seconds=${SECONDS_EACH:-10}
+work=$(mktemp -d)
+table=$work/table
+daemon=
+failed=0
+: >"$table"
+trap 'stop; rm -rf "$work"' EXIT
+trap 'exit 1' INT TERM
+
+stop() {
+    [ -n "$daemon" ] && kill "$daemon" 2>/dev/null && wait "$daemon" 2>/dev/null
+    daemon=
+}
+
+# The greatest number of connections that this awtd takes.
+connections=4096
+"$build/awtd" --max-connections 16384 --version >/dev/null 2>&1 && connections=16384
+
+# start: a daemon of our own; sets `daemon` and `address`.
+start() {
+    awtd_options="--max-connections $connections --log-level warn"
+    . tests/start_awtd.sh
+    [ -n "$address" ] && return
+    echo "awtd does not listen:"
+    cat "$work/log"
+    exit 1
+}
+
+# load NAME ARGUMENTS...: one run of awt-load; its table goes to $work/NAME and to us.
+load() {
+    name=$1
+    shift
+    echo
+    "$build/awt-load" --connect "$address" --token-file "$work/state/token" --duration "$seconds" "$@" >"$work/$name" 2>"$work/$name.err"
+    code=$?
+    cat "$work/$name"
+    [ -s "$work/$name" ] && return
+    tail -n 1 "$work/$name.err"
+    [ $code -eq 0 ] || failed=1
+    return 1
+}
+
+# The figure of row $2 ("awtd / bare") in run $1; columns: came p50 p90 p99 p99.9 p99.99 max.
+figure() {
+    awk -v row="$2" -v column="$3" '
+        BEGIN { place["came"] = 1; place["p50"] = 2; place["p90"] = 3; place["p99"] = 4; place["p99.9"] = 5 }
+        index($0, row " ") == 1 {
+            $0 = substr($0, 17)
+            print $(row ~ / \/ / ? place[column] : place[column] + 1)
+        }' "$work/$1"
+}
+
+# see POINT WHAT MEASURED "<=" AIM: a line of the table. An empty measurement is said to be one.
+see() {
+    awk -v point="$1" -v what="$2" -v value="$3" -v sign="$4" -v aim="$5" 'BEGIN {
+        met = value == "" || value == "-" ? "not measured" : (sign == "<=" ? value + 0 <= aim + 0 : value + 0 >= aim + 0) ? "met" : "NOT MET"
+        printf "%-5s %-62s %10s  %s %-6s %s\n", point, what, value == "" ? "-" : value, sign, aim, met
+    }' >>"$table"
+}
+
+wanted() {
+    [ -z "${ONLY:-}" ] || [ "$ONLY" = "$1" ]
+}
+
+start
+
+if wanted 1; then
+    load ping --scenario query --connections 1 --forests 1 --closed &&
+        see 1 "query of a ready 20 KB frame, one connection: p50, awtd / bare" "$(figure ping 'awtd / bare' p50)" "<=" 1.15
+    load idle --scenario idle --connections 300 --rate 20 --idle 10000 &&
+        see 1 "300 ask, $(sed -n 's/.* and \([0-9]*\) idle ones.*/\1/p' "$work/idle") idle: p50, with / without them" \
+            "$(figure idle 'laden / awtd' p50)" "<=" 1.3
+fi
+if wanted 2; then
+    load many --scenario query --connections 300 --rate 60 &&
+        see 2 "300 connections, 60 Hz, open loop: p99, awtd / bare" "$(figure many 'awtd / bare' p99)" "<=" 3
+    load more --scenario query --connections 1000 --rate 20 &&
+        see 2 "1,000 connections, 20 Hz, open loop: p99, awtd / bare" "$(figure more 'awtd / bare' p99)" "<=" 4
+fi
+if wanted 3; then
+    load throughput --scenario query --connections 64 --closed &&
+        see 3 "throughput at 64 connections: answers a second, awtd / bare" \
+            "$(figure throughput 'awtd / bare' came)" ">=" 0.8
+    load fan --scenario stream --connections 64 --forests 1 --closed --motion still --credit 8 &&
+        see 3 "fan-out of a 20 KB frame to 64: frames a second, awtd / bare" "$(figure fan 'awtd / bare' came)" ">=" 0.8
+fi
+if wanted 4; then
+    load slow --scenario slow-viewer --duration 20 &&
+        see 4 "a tenth of the viewers stalled: the others' p99, with / without" \
+            "$(sed -n 's/.*median of .* pairs: //p' "$work/slow")" "<=" 1.10
+fi
+if wanted 5; then
+    load quiet --scenario query --connections 64 --rate 20
+    "$build/awt-load" --connect "$address" --token-file "$work/state/token" --quiet --no-floor --scenario stream --closed \
+        --style long-curly --strands 10000 --motion run --forests 8 --connections 8 --duration "$((3 * seconds + 60))" \
+        >/dev/null 2>&1 &
+    busy=$!
+    sleep 15 # until the heads are there
+    load loud --scenario query --connections 64 --rate 20 &&
+        see 5 "workers saturating all cores: p99 of ready frames, busy / quiet" \
+            "$(awk -v a="$(figure loud awtd p99)" -v b="$(figure quiet awtd p99)" 'BEGIN { if (b > 0) printf "%.2f", a / b }')" "<=" 2
+    echo "(the bare server's own p99 beside busy workers / beside quiet ones: $(awk -v a="$(figure loud 'bare poll()' p99)" \
+        -v b="$(figure quiet 'bare poll()' p99)" 'BEGIN { if (b > 0) printf "%.2f", a / b }'))"
+    kill "$busy" 2>/dev/null
+    wait "$busy" 2>/dev/null
+fi
+
+# How many heads of the long style run freely: twice as many each time, until frames stay away (less than 97 % of 60 Hz).
+# Sets `held`, and says what gave way first.
+heads() {
+    held=0
+    for count in 4 8 12 16 24 32 48 64 96 128 192 256; do
+        "$build/awt-load" --connect "$address" --token-file "$work/state/token" --quiet --duration 5 --scenario stream --free \
+            --strands 10000 --rate 60 --forests $count --connections $count --moving "$1" --motion "$2" >"$work/heads" 2>&1
+        share=$(awk 'index($0, "awtd ") == 1 && $2 > 0 { print $3 / $2 }' "$work/heads")
+        if [ -z "$share" ]; then
+            tail -n 1 "$work/heads"
+            return
+        fi
+        echo "$count heads, $1 moving ($2): $(awk -v s="$share" 'BEGIN { printf "%.1f", 100 * s }') % of the frames came, p99 $(figure heads awtd p99) us after what they show; $(sed -n 's/.*frames left out/left out/p' "$work/heads")"
+        awk -v s="$share" 'BEGIN { exit s >= 0.97 }' && return
+        held=$count
+    done
+}
+
+if wanted 6; then
+    echo
+    "$build/awt-bench" capacity >"$work/capacity" 2>/dev/null
+    sed -n '/frames of/,$p' "$work/capacity"
+    cores=$(getconf _NPROCESSORS_ONLN)
+    set -- $(awk '/^long / && /[|].*[|]/ { print $(NF - 2), $(NF - 1), $NF }' "$work/capacity")
+    for share in 0 0.1 1; do
+        heads $share lean-forever
+        echo "long style, $share of the heads moving: $held held on $cores cores; the cost model says ${1:-?} a core"
+        [ $# -gt 0 ] && shift
+    done
+    heads 1 jump
+    echo "all heads jumping at once: $held held on $cores cores"
+fi
+
+stop
+echo
+echo "point what                                                             measured  aim"
+cat "$table"
+exit $failed
