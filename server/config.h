@@ -1,4 +1,5 @@
-/* config.h: what the command line asks of the daemon. */
+/* config.h: what is asked of the daemon: by the command line, else by the environment, else by a file, else as is
+ * usual. */
 #ifndef CONFIG_H
 #define CONFIG_H
 
@@ -6,8 +7,12 @@
 #include "limits.h"
 #include "log.h"
 
+enum { CONFIG_HOST = 256, CONFIG_PORT = 8 };
+
 typedef struct config {
-    char host[256], port[8];
+    char host[CONFIG_HOST], port[CONFIG_PORT];
+    char admin_host[CONFIG_HOST], admin_port[CONFIG_PORT]; /* where HTTP is answered; no port: nowhere */
+    bool admin_open;                                       /* other machines may reach that */
     unsigned workers;
     uint32_t max_forests, max_connections;
     char state_directory[LIMIT_PATH]; /* made only if the token file is in it */
@@ -16,10 +21,13 @@ typedef struct config {
     bool no_auth;
     int64_t resume_grace_us, forest_grace_us, quiet_us; /* see service.h */
     log_level level;
+    log_format format;
+    bool check; /* only say whether it could start */
 } config;
 
-/* Reads arguments[0 .. count-1] (without the program's name). OPTIONS_HELP and OPTIONS_VERSION have printed what was
- * asked to standard output; OPTIONS_WRONG: `error` says what and why. */
+/* Reads arguments[0 .. count-1] (without the program's name), and what they and $AWTD_... name. OPTIONS_HELP and
+ * OPTIONS_VERSION have printed what was asked (help, settings, version) to standard output; OPTIONS_WRONG: `error` says
+ * what and why. */
 option_result config_read(int count, char *const *arguments, config *out, char *error, size_t error_size);
 
 #endif

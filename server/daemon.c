@@ -11,6 +11,24 @@
 #include <string.h>
 #include <unistd.h>
 
+static net_place listen_place(const config *asked)
+{
+    return (net_place){.option = "listen",
+                       .host = asked->host,
+                       .port = asked->port,
+                       .loopback_why = asked->no_auth
+                                           ? "--no-auth lets everyone in who reaches it: listen on 127.0.0.1 "
+                                             "or ::1, or leave --no-auth out"
+                                           : NULL};
+}
+
+bool daemon_check(const config *asked, char *error, size_t error_size)
+{
+    const net_place place = listen_place(asked);
+    return net_check(&place, error, error_size) &&
+           (asked->no_auth || token_check(asked->token_file, !asked->own_token_file, error, error_size));
+}
+
 static bool open_token(const config *asked, service_options *options, char *error, size_t error_size)
 {
     options->auth_required = !asked->no_auth;
@@ -26,8 +44,9 @@ static void announce(const config *asked, const char *bound)
 {
     printf("listening on %s\n", bound);
     fflush(stdout);
+    char token[LOG_QUOTED];
     log_write(LOG_INFO, "started", "version=%s listen=%s workers=%u token=%s", AWTD_VERSION, bound, asked->workers,
-              asked->no_auth ? "none" : asked->token_file);
+              asked->no_auth ? "none" : log_quote(asked->token_file, strlen(asked->token_file), token));
 }
 
 typedef struct serving {
@@ -83,6 +102,7 @@ bool daemon_run(const config *asked, char *error, size_t error_size)
     char bound[NET_ADDRESS];
     bool served = false;
     log_set_level(asked->level);
+    log_set_format(asked->format);
     if (!open_token(asked, &options, error, error_size)) {
         return false;
     }
@@ -90,7 +110,8 @@ bool daemon_run(const config *asked, char *error, size_t error_size)
         snprintf(error, error_size, "no descriptors are left for this process");
         return false;
     }
-    int listener = net_listen(asked->host, asked->port, asked->no_auth, bound, error, error_size);
+    const net_place place = listen_place(asked);
+    int listener = net_listen(&place, bound, error, error_size);
     if (listener >= 0) {
         wake_on_signals(&bell);
         served = serve(asked, &options, &bell, listener, bound, error, error_size);

@@ -17,8 +17,9 @@ enum {
     LIMIT_FOREST_GRACE_S = 3600,
     LIMIT_QUIET_S = 120,
     LIMIT_GRACE_S_GREATEST = 31536000,
-    LIMIT_BACKLOG = 128, /* connections that wait for accept */
-    LIMIT_PATH = 1024,   /* bytes of the state directory's and the token file's path */
+    LIMIT_BACKLOG = 128,           /* connections that wait for accept */
+    LIMIT_PATH = 1024,             /* bytes of the state directory's and the token file's path */
+    LIMIT_CONFIG_FILE = 64 * 1024, /* bytes of a file of settings */
 
     /* one session */
     LIMIT_SESSION_FORESTS = 256, /* forests open on it */
@@ -44,6 +45,9 @@ enum {
     LIMIT_OUTPUT_BYTES = 16 << 20, /* unsent bytes; likewise */
     LIMIT_OUTPUT_GATHER = 8,       /* messages handed to the socket at once */
     LIMIT_LOG_LINE = 1024,         /* bytes; the rest is cut */
+    LIMIT_LOG_EVENTS = 64,         /* kinds of lines that are told apart */
+    LIMIT_LOG_BURST = 100,         /* lines of one kind at once */
+    LIMIT_LOG_PER_S = 10,          /* lines of one kind a second, from then on */
 
     /* one turn of the loop, so that no connection keeps the others waiting */
     LIMIT_TURN_ACCEPTS = 16,

@@ -1,63 +1,68 @@
 /* log.c: see log.h. */
 #include "log.h"
-#include "limits.h"
+#include "clock.h"
+#include "log_limit.h"
+#include "log_line.h"
+#include "metrics.h"
 
+#include <inttypes.h>
+#include <pthread.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
 
-static const char *const level_names[] = {
-    [LOG_ERROR] = "error", [LOG_WARN] = "warn", [LOG_INFO] = "info", [LOG_DEBUG] = "debug"};
-
-static log_level greatest_level = LOG_INFO;
-
-bool log_level_parse(const char *text, log_level *out)
-{
-    for (size_t i = 0; i < sizeof level_names / sizeof level_names[0]; i++) {
-        if (strcmp(text, level_names[i]) == 0) {
-            *out = (log_level)i;
-            return true;
-        }
-    }
-    return false;
-}
+static atomic_int greatest_level = LOG_INFO, written_format = LOG_TEXT;
+static log_limiter limiter; /* under limiter_lock */
+static pthread_mutex_t limiter_lock = PTHREAD_MUTEX_INITIALIZER;
 
 void log_set_level(log_level level)
 {
-    greatest_level = level;
+    atomic_store(&greatest_level, (int)level);
 }
 
-/* Appends what snprintf left of the line; `used` never passes the end. */
-static size_t line_advance(size_t used, int written, size_t size)
+void log_set_format(log_format format)
 {
-    size_t next = used + (written > 0 ? (size_t)written : 0);
-    return next < size ? next : size - 1;
+    atomic_store(&written_format, (int)format);
 }
 
-void log_write(log_level level, const char *event, const char *details, ...)
+static bool may_write(const char *event, uint64_t *suppressed)
 {
-    if (level > greatest_level) {
-        return;
-    }
+    pthread_mutex_lock(&limiter_lock);
+    bool may = log_limit_take(&limiter, event, clock_monotonic_us(), suppressed);
+    pthread_mutex_unlock(&limiter_lock);
+    metrics_count(METRIC_LOG_SUPPRESSED, !may);
+    return may;
+}
+
+/* UTC as RFC 3339 has it, with milliseconds. */
+static void tell_time(char *out, size_t size)
+{
     struct timespec now = {0};
     struct tm utc = {0};
     clock_gettime(CLOCK_REALTIME, &now);
     gmtime_r(&now.tv_sec, &utc);
+    size_t used = strftime(out, size, "%Y-%m-%dT%H:%M:%S", &utc);
+    snprintf(out + used, size - used, ".%03ldZ", now.tv_nsec / 1000000);
+}
 
-    char line[LIMIT_LOG_LINE];
-    size_t size = sizeof line - 1, used = 0; /* the last byte is the line's end */
-    used = line_advance(used, (int)strftime(line, size, "%Y-%m-%dT%H:%M:%S", &utc), size);
-    used = line_advance(
-        used, snprintf(line + used, size - used, ".%03ldZ %-5s %s ", now.tv_nsec / 1000000, level_names[level], event),
-        size);
+void log_write(log_level level, const char *event, const char *details, ...)
+{
+    uint64_t suppressed = 0;
+    if ((int)level > atomic_load(&greatest_level) || !may_write(event, &suppressed)) {
+        return;
+    }
+    char time[64], pairs[LIMIT_LOG_LINE], line[LOG_LINE_BYTES];
+    int before = suppressed ? snprintf(pairs, sizeof pairs, "suppressed=%" PRIu64 " ", suppressed) : 0;
     va_list arguments;
     va_start(arguments, details);
-    used = line_advance(used, vsnprintf(line + used, size - used, details, arguments), size);
+    vsnprintf(pairs + before, sizeof pairs - (size_t)before, details, arguments);
     va_end(arguments);
-    line[used++] = '\n';
-    if (write(STDERR_FILENO, line, used) < 0) {
+    tell_time(time, sizeof time);
+    size_t size = log_line_write((log_format)atomic_load(&written_format), time, level, event, pairs, line);
+    if (write(STDERR_FILENO, line, size) < 0) {
         return; /* nobody reads the log: the daemon goes on */
     }
 }

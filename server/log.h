@@ -1,9 +1,10 @@
-/* log.h: one readable line per event on standard error:
+/* log.h: one line per event on standard error, as text or as JSON:
  *
- *     2025-03-01T12:00:00.123Z info  forest created name="long" strands=10000
+ *     time=2025-03-01T12:00:00.123Z level=info msg="forest created" name="long" strands=10000
+ *     {"time":"2025-03-01T12:00:00.123Z","level":"info","msg":"forest created","name":"long","strands":10000}
  *
- * UTC time, level, event, details as key=value. A line is one write. Text that came from a peer goes through
- * log_quote, so that it can neither end a line nor forge one. */
+ * A line is one write. Text that came from a peer goes through log_quote, so that it can neither end a line nor forge
+ * one. Of an event that comes too often lines are left out (log_limit.h), and the next one says how many. */
 #ifndef SERVER_LOG_H
 #define SERVER_LOG_H
 
@@ -11,6 +12,7 @@
 #include <stddef.h>
 
 typedef enum log_level { LOG_ERROR, LOG_WARN, LOG_INFO, LOG_DEBUG } log_level;
+typedef enum log_format { LOG_TEXT, LOG_JSON } log_format;
 
 #if defined(__GNUC__)
 #define LOG_FORMAT __attribute__((format(printf, 3, 4)))
@@ -20,11 +22,14 @@ typedef enum log_level { LOG_ERROR, LOG_WARN, LOG_INFO, LOG_DEBUG } log_level;
 
 /* "error", "warn", "info", "debug". False: none of them. */
 bool log_level_parse(const char *text, log_level *out);
+/* "text", "json". False: none of them. */
+bool log_format_parse(const char *text, log_format *out);
 
-/* Lines above `level` are left out. Before the first thread is started; LOG_INFO until then. */
+/* Lines above `level` are left out; LOG_INFO and LOG_TEXT until then. Any thread. */
 void log_set_level(log_level level);
+void log_set_format(log_format format);
 
-/* `details` is printf's. Any thread. */
+/* `event` is a literal; `details` is printf's, and gives key=value pairs. Any thread. */
 void log_write(log_level level, const char *event, const char *details, ...) LOG_FORMAT;
 
 enum { LOG_QUOTED = 272 };

@@ -1,4 +1,4 @@
-/* main.c: awtd: options, the daemon, the exit code (0 fine, 1 could not start, 2 wrong usage). */
+/* main.c: awtd: options, the daemon, the exit code (0 fine, 1 could not start, 2 wrong usage or settings). */
 #include "daemon.h"
 
 #include <stdio.h>
@@ -16,6 +16,11 @@ int main(int argc, char **argv)
         return 2;
     case OPTIONS_RUN:
         break;
+    }
+    if (asked.check) {
+        const bool good = daemon_check(&asked, error, sizeof error);
+        fprintf(good ? stdout : stderr, "awtd: %s\n", good ? "all settings are good" : error);
+        return good ? 0 : 2;
     }
     if (!daemon_run(&asked, error, sizeof error)) {
         fprintf(stderr, "awtd: %s\n", error);

@@ -75,32 +75,51 @@ static int listen_on(const struct addrinfo *at)
     return -1;
 }
 
-int net_listen(const char *host, const char *port, bool loopback_only, char bound[NET_ADDRESS], char *error,
-               size_t error_size)
+/* The place's addresses, every one of them allowed; NULL: `error` says why not. */
+static struct addrinfo *find_addresses(const net_place *place, char *error, size_t error_size)
 {
     struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM, .ai_flags = AI_PASSIVE};
     struct addrinfo *found = NULL;
-    int failure = getaddrinfo(host[0] ? host : NULL, port, &hints, &found);
+    int failure = getaddrinfo(place->host[0] ? place->host : NULL, place->port, &hints, &found);
     if (failure != 0) {
-        snprintf(error, error_size, "--listen: %s:%s is not an address: %s", host, port, gai_strerror(failure));
-        return -1;
+        snprintf(error, error_size, "--%s: %s:%s is not an address: %s", place->option, place->host, place->port,
+                 gai_strerror(failure));
+        return NULL;
     }
-    int fd = -1;
-    snprintf(error, error_size, "--listen: %s:%s has no address", host, port);
-    for (const struct addrinfo *at = found; at && fd < 0; at = at->ai_next) {
-        if (loopback_only && !is_loopback(at->ai_addr)) {
-            snprintf(error, error_size,
-                     "--no-auth lets everyone in who reaches the address, and %s can be reached from other machines: "
-                     "listen on 127.0.0.1 or ::1, or leave --no-auth out",
-                     host[0] ? host : "an empty host");
-            break;
+    for (const struct addrinfo *at = found; at; at = at->ai_next) {
+        if (place->loopback_why && !is_loopback(at->ai_addr)) {
+            snprintf(error, error_size, "--%s: %s can be reached from other machines; %s", place->option,
+                     place->host[0] ? place->host : "an empty host", place->loopback_why);
+            freeaddrinfo(found);
+            return NULL;
         }
+    }
+    return found;
+}
+
+bool net_check(const net_place *place, char *error, size_t error_size)
+{
+    struct addrinfo *found = find_addresses(place, error, error_size);
+    if (found) {
+        freeaddrinfo(found);
+    }
+    return found != NULL;
+}
+
+int net_listen(const net_place *place, char bound[NET_ADDRESS], char *error, size_t error_size)
+{
+    struct addrinfo *found = find_addresses(place, error, error_size);
+    int fd = -1;
+    for (const struct addrinfo *at = found; at && fd < 0; at = at->ai_next) {
         fd = listen_on(at);
         if (fd < 0) {
-            snprintf(error, error_size, "cannot listen on %s:%s: %s", host, port, strerror(errno));
+            snprintf(error, error_size, "--%s: cannot listen on %s:%s: %s", place->option, place->host, place->port,
+                     strerror(errno));
         }
     }
-    freeaddrinfo(found);
+    if (found) {
+        freeaddrinfo(found);
+    }
     if (fd >= 0) {
         struct sockaddr_storage own = {0};
         socklen_t size = sizeof own;

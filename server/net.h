@@ -13,10 +13,18 @@ enum { NET_ADDRESS = 80 }; /* bytes of "[IPV6%scope]:PORT" */
 /* A non-blocking pipe: [0] to read, [1] to write. */
 bool net_pipe(int ends[2]);
 
-/* Listens on host (empty: any address) and port (0: any). With `loopback_only`, an address that is reachable from
- * other machines is refused. `bound` receives the address in numbers. -1: `error` says why. */
-int net_listen(const char *host, const char *port, bool loopback_only, char bound[NET_ADDRESS], char *error,
-               size_t error_size);
+/* Where to listen. */
+typedef struct net_place {
+    const char *option;       /* that named it, without the dashes: for errors */
+    const char *host, *port;  /* an empty host: any address; port 0: any port */
+    const char *loopback_why; /* an address that other machines reach is refused, with this advice; NULL: it is not */
+} net_place;
+
+/* Whether one could listen there, as far as that is known without doing it. False: `error` says why not. */
+bool net_check(const net_place *place, char *error, size_t error_size);
+
+/* Listens. `bound` receives the address in numbers. -1: `error` says why. */
+int net_listen(const net_place *place, char bound[NET_ADDRESS], char *error, size_t error_size);
 
 typedef enum net_result { NET_DONE, NET_LATER, NET_ENDED, NET_FAILED, NET_EXHAUSTED } net_result;
 

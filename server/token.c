@@ -134,3 +134,37 @@ bool token_open(const char *path, uint8_t token[AUTH_TOKEN_SIZE], char *error, s
     close(fd);
     return taken;
 }
+
+/* Cuts the last name off, or leaves "/" or ".". False: it is one of them. */
+static bool cut_name(char *path)
+{
+    char *slash = strrchr(path, '/');
+    if (strcmp(path, "/") == 0 || strcmp(path, ".") == 0) {
+        return false;
+    }
+    if (!slash) {
+        memcpy(path, ".", 2);
+    } else {
+        slash[slash == path] = '\0';
+    }
+    return true;
+}
+
+bool token_check(const char *path, bool makes_directory, char *error, size_t error_size)
+{
+    uint8_t token[AUTH_TOKEN_SIZE];
+    char above[LIMIT_PATH];
+    if (access(path, F_OK) == 0) {
+        return token_open(path, token, error, error_size);
+    }
+    snprintf(above, sizeof above, "%s", path);
+    bool cut = cut_name(above);
+    while (makes_directory && cut && access(above, F_OK) != 0 && errno == ENOENT) {
+        cut = cut_name(above);
+    }
+    if (access(above, W_OK | X_OK) != 0) {
+        snprintf(error, error_size, "the token file %s cannot be made: in %s: %s", path, above, strerror(errno));
+        return false;
+    }
+    return true;
+}

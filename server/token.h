@@ -14,4 +14,8 @@ bool token_make_directory(const char *directory, char *error, size_t error_size)
  * refused. False: `error` (of `error_size` bytes) says what is wrong and what to do. */
 bool token_open(const char *path, uint8_t token[AUTH_TOKEN_SIZE], char *error, size_t error_size);
 
+/* Whether token_open would read or make it, as far as that is known without making anything; `makes_directory`: after
+ * token_make_directory. False: `error` says why not. */
+bool token_check(const char *path, bool makes_directory, char *error, size_t error_size);
+
 #endif

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const option *option_find(const option_program *program, const char *name, size_t length)
+const option *options_find(const option_program *program, const char *name, size_t length)
 {
     for (size_t i = 0; i < program->option_count; i++) {
         const option *o = &program->options[i];
@@ -43,12 +43,22 @@ static bool option_take_number(const option *o, const char *text, char *error, s
     return false;
 }
 
-static bool option_take(const option *o, const char *text, char *error, size_t error_size)
+static bool take_flag(const option *o, const char *text, char *error, size_t error_size)
+{
+    const bool yes = strcmp(text, "yes") == 0;
+    if (!yes && strcmp(text, "no") != 0) {
+        snprintf(error, error_size, "--%s takes yes or no, not \"%.64s\"", o->name, text);
+        return false;
+    }
+    *(bool *)o->value = yes;
+    return true;
+}
+
+bool options_take(const option *o, const char *text, char *error, size_t error_size)
 {
     switch (o->kind) {
     case OPTION_FLAG:
-        *(bool *)o->value = true;
-        return true;
+        return take_flag(o, text, error, error_size);
     case OPTION_TEXT:
     case OPTION_OPTIONAL_TEXT:
         *(const char **)o->value = text;
@@ -92,7 +102,7 @@ option_result options_parse(const option_program *program, int count, char *cons
         if (strcmp(name, "version") == 0) {
             return OPTIONS_VERSION;
         }
-        const option *o = option_find(program, name, length);
+        const option *o = options_find(program, name, length);
         if (!o) {
             snprintf(error, error_size, "there is no option --%.*s; %s --help lists them", (int)length, name,
                      program->name);
@@ -100,20 +110,18 @@ option_result options_parse(const option_program *program, int count, char *cons
         }
         const char *text = inlined;
         bool next_is_value = i + 1 < count && strncmp(arguments[i + 1], "--", 2) != 0;
-        if (o->kind == OPTION_FLAG && inlined) {
-            snprintf(error, error_size, "--%s takes no argument", o->name);
-            return OPTIONS_WRONG;
-        }
-        if (o->kind == OPTION_OPTIONAL_TEXT && !inlined) {
+        if (o->kind == OPTION_FLAG && !inlined) {
+            text = "yes";
+        } else if (o->kind == OPTION_OPTIONAL_TEXT && !inlined) {
             text = next_is_value ? arguments[++i] : "-";
-        } else if (o->kind != OPTION_FLAG && !inlined) {
+        } else if (!inlined) {
             if (!next_is_value) {
                 snprintf(error, error_size, "--%s wants %s after it", o->name, o->argument);
                 return OPTIONS_WRONG;
             }
             text = arguments[++i];
         }
-        if (!option_take(o, text, error, error_size)) {
+        if (!options_take(o, text, error, error_size)) {
             return OPTIONS_WRONG;
         }
     }

@@ -1,5 +1,6 @@
 /* options.h: the one way in which awtd's programs take their command lines: --name VALUE or --name=VALUE from a
- * table, checked, with a --help that is made from the same table. (getopt_long is not POSIX.) */
+ * table, checked, with a --help that is made from the same table. (getopt_long is not POSIX.) The other places that
+ * options may be set in: options_layers.h. */
 #ifndef BASE_OPTIONS_H
 #define BASE_OPTIONS_H
 
@@ -10,7 +11,7 @@
 enum { OPTION_LIST_MAX = 64 };
 
 typedef enum option_kind {
-    OPTION_FLAG,          /* bool: given or not */
+    OPTION_FLAG,          /* bool: given or not; --name=no takes it back */
     OPTION_TEXT,          /* const char *: the argument */
     OPTION_OPTIONAL_TEXT, /* const char *: the argument, or "-" where none follows */
     OPTION_INTEGER,       /* long long within [least, greatest] */
@@ -46,6 +47,11 @@ typedef enum option_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_VERSION, OPTIONS
  * `operand_max`) receives what is no option. OPTIONS_WRONG: `error` (of `error_size` bytes) says what and why. */
 option_result options_parse(const option_program *program, int count, char *const *arguments, const char **operands,
                             size_t operand_max, size_t *operand_count, char *error, size_t error_size);
+
+/* The option of that name (of `length` bytes); NULL: there is none. */
+const option *options_find(const option_program *program, const char *name, size_t length);
+/* Sets it from `text`, which a text's value points to then. False: `error` says why it cannot be that. */
+bool options_take(const option *o, const char *text, char *error, size_t error_size);
 
 /* The help text, with defaults as they stand in the values. */
 void options_help(const option_program *program, FILE *file);
