@@ -379,6 +379,10 @@ typedef struct awt_step_stats {
  * AWT_BAD_TIME (earlier than the forest's time), AWT_LIMIT (too far ahead). `stats` may be NULL. */
 awt_status awt_forest_advance(awt_forest *forest, int64_t time_us, awt_step_stats *stats, awt_error *error);
 
+/* Passes over the time to `time_us` without simulating it: what a machine that cannot keep up leaves out. The head goes
+ * where its poses say, and the hair rides along as a solid. AWT_BAD_TIME (earlier than the forest's time). */
+awt_status awt_forest_skip(awt_forest *forest, int64_t time_us, awt_error *error);
+
 int64_t awt_forest_time(const awt_forest *forest);
 /* The head's pose at the forest's time. */
 awt_pose awt_forest_head(const awt_forest *forest);
@@ -423,10 +427,11 @@ typedef struct awt_recorder {
 /* Begins a recording: writes the snapshot of the forest as it stands. From then on the forest is driven through the
  * recorder. AWT_NO_MEMORY; nothing is written then. */
 awt_status awt_recorder_begin(awt_recorder *recorder, awt_error *error);
-/* awt_forest_move, awt_forest_set_params and awt_forest_advance, written down where they succeed. */
+/* awt_forest_move, awt_forest_set_params, awt_forest_advance and awt_forest_skip, written down where they succeed. */
 awt_status awt_recorder_move(awt_recorder *recorder, const awt_motion *motion, awt_error *error);
 awt_status awt_recorder_set_params(awt_recorder *recorder, const awt_params *params, awt_error *error);
 awt_status awt_recorder_advance(awt_recorder *recorder, int64_t time_us, awt_step_stats *stats, awt_error *error);
+awt_status awt_recorder_skip(awt_recorder *recorder, int64_t time_us, awt_error *error);
 
 typedef struct awt_replay awt_replay;
 

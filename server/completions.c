@@ -1,8 +1,10 @@
 /* completions.c: see completions.h. */
 #include "completions.h"
+#include "clock.h"
 #include "convert.h"
 #include "log.h"
 #include "metrics.h"
+#include "published.h"
 #include "session.h"
 
 #include <string.h>
@@ -107,7 +109,7 @@ static bool take_picture(service *shared, resident *r)
     }
     shared->counters.frames_encoded += drawn->view_count;
     metrics_count(METRIC_FRAMES_ENCODED, drawn->view_count);
-    return registry_publish(r, drawn);
+    return published_take(r, drawn);
 }
 
 /* A forest from the state directory has no maker: it waits for those who have its tokens. */
@@ -157,7 +159,7 @@ static void take_created(service *shared, resident *r)
 static const forest_input *report_refused(service *shared, const forest_input *inputs)
 {
     const forest_input *input = inputs;
-    for (; input->kind != FOREST_QUERY; input = input->next) {
+    for (; input && input->kind != FOREST_QUERY; input = input->next) {
         session *sender = input->error.status == AWT_OK ? NULL : session_find(shared, input->from);
         if (sender) {
             session_error_awt(sender, forest_input_message(input->kind), input->from.request, &input->error);
@@ -221,6 +223,21 @@ static void take_drawn(service *shared, resident *r)
 
 /* ---- both -------------------------------------------------------------------------------------------------------- */
 
+static void count(service_counters *c, const forest_work *done)
+{
+    const bool missed = done->job.class == JOB_STEP && done->job.ended_us > done->job.deadline_us;
+    c->steps += done->steps;
+    c->step_us += done->step_us;
+    c->encode_us += done->encode_us;
+    c->deadlines_missed += missed;
+    c->dropped_us += (uint64_t)done->dropped_us;
+    metrics_count(METRIC_DEADLINES_MISSED, missed);
+    metrics_count(METRIC_DROPPED_US, (uint64_t)done->dropped_us);
+    if (done->job.class == JOB_STEP) {
+        metrics_observe(METRIC_LATENESS, clock_between_us(done->job.deadline_us, done->job.ended_us));
+    }
+}
+
 bool completions_take(service *shared)
 {
     job *done = worker_pool_take_done(shared->pool);
@@ -228,9 +245,7 @@ bool completions_take(service *shared)
     while (done) {
         job *next = done->next;
         resident *r = registry_take_back(done);
-        shared->counters.steps += r->work.steps;
-        shared->counters.step_us += r->work.step_us;
-        shared->counters.encode_us += r->work.encode_us;
+        count(&shared->counters, &r->work);
         if (r->work.making) {
             take_created(shared, r);
         } else {

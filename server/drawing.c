@@ -2,10 +2,13 @@
 #include "drawing.h"
 #include "base/error.h"
 #include "clock.h"
+#include "between.h"
 #include "drawn_form.h"
 #include "metrics.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The strands of one level, which ribbons and strands are made of. */
 typedef struct drawn_level {
@@ -15,6 +18,18 @@ typedef struct drawn_level {
 } drawn_level;
 
 enum { LEVELS = FORM_LEVEL_GREATEST + 1 };
+
+/* An instant between two sub-steps. */
+typedef struct drawn_between {
+    float *centres, *frames; /* of the first, as in drawing; NULL: nothing was ever held */
+    float *mixed_centres, *mixed_frames;
+    awt_pose head;
+    int64_t time_us;
+    uint64_t held_at; /* sub-steps that the forest had made then */
+    double share;     /* of the way to the second; 1: the forest is shown as it stands */
+    uint64_t mixed_at;
+    double mixed_share; /* what the mixed ones are of */
+} drawn_between;
 
 struct drawing {
     const awt_groom *groom;
@@ -26,7 +41,8 @@ struct drawing {
     bool *moved; /* [wisp_count[0]]: working memory */
     float *strand_scratch;
     awt_node *nodes; /* [finest_nodes] */
-    uint64_t held;   /* bytes of the arrays */
+    drawn_between between;
+    uint64_t held; /* bytes of the arrays */
     drawn_form forms[FORM_COUNT];
 };
 
@@ -74,6 +90,7 @@ awt_status drawing_create(const awt_groom *groom, drawing **out, awt_error *erro
         d->moved = take_memory(d, d->info.wisp_count[0], sizeof *d->moved);
         status = d->centres && d->frames && d->moved ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
     }
+    d->between.share = 1;
     if (status != AWT_OK) {
         drawing_destroy(d);
         return status;
@@ -92,6 +109,10 @@ void drawing_destroy(drawing *d)
     }
     free(d->centres);
     free(d->frames);
+    free(d->between.centres);
+    free(d->between.frames);
+    free(d->between.mixed_centres);
+    free(d->between.mixed_frames);
     for (int i = 0; i < LEVELS; i++) {
         free(d->levels[i].points);
     }
@@ -118,23 +139,98 @@ uint64_t drawing_bytes(const drawing *d)
 /* ---- the state --------------------------------------------------------------------------------------------------- */
 
 /* Which top-level wisps moved since then; NULL: none did. */
-static const bool *find_moved(const drawing_job *j, uint64_t since)
+static const bool *find_moved(drawing *d, const awt_forest *forest, uint64_t since)
 {
-    return awt_forest_moved(j->forest, since, j->d->moved) > 0 ? j->d->moved : NULL;
+    return awt_forest_moved(forest, since, d->moved) > 0 ? d->moved : NULL;
+}
+
+/* What has not moved after this sub-step is shown as it is now. */
+static uint64_t shown_at(const drawing_job *j)
+{
+    return awt_forest_sub_steps(j->forest) - (j->d->between.share < 1 ? 1 : 0);
 }
 
 /* Brings the guides up to date. */
-static void take_guides(const drawing_job *j)
+static void take_guides(drawing *d, const awt_forest *forest)
 {
-    drawing *d = j->d;
     const bool *moved = NULL;
     if (!d->guides_made) {
-        awt_forest_guides(j->forest, d->centres, d->frames);
-    } else if ((moved = find_moved(j, d->guides_at)) != NULL) {
-        awt_forest_guides_of(j->forest, moved, d->centres, d->frames);
+        awt_forest_guides(forest, d->centres, d->frames);
+    } else if ((moved = find_moved(d, forest, d->guides_at)) != NULL) {
+        awt_forest_guides_of(forest, moved, d->centres, d->frames);
     }
     d->guides_made = true;
-    d->guides_at = awt_forest_sub_steps(j->forest);
+    d->guides_at = awt_forest_sub_steps(forest);
+}
+
+/* The guides as they are shown: *frames too. */
+static const float *show_guides(const drawing_job *j, const float **frames)
+{
+    drawing *d = j->d;
+    drawn_between *b = &d->between;
+    take_guides(d, j->forest);
+    if (b->share == 1) {
+        *frames = d->frames;
+        return d->centres;
+    }
+    if (b->mixed_at != d->guides_at || b->mixed_share != b->share) {
+        between_mix(b->centres, d->centres, b->share, 3, d->info.finest_nodes, b->mixed_centres);
+        between_mix(b->frames, d->frames, b->share, 4, d->info.finest_nodes, b->mixed_frames);
+        b->mixed_at = d->guides_at;
+        b->mixed_share = b->share;
+    }
+    *frames = b->mixed_frames;
+    return b->mixed_centres;
+}
+
+static bool take_between(drawing *d)
+{
+    drawn_between *b = &d->between;
+    if (!b->centres) {
+        b->centres = take_memory(d, d->info.finest_nodes, 3 * sizeof(float));
+        b->frames = take_memory(d, d->info.finest_nodes, 4 * sizeof(float));
+        b->mixed_centres = take_memory(d, d->info.finest_nodes, 3 * sizeof(float));
+        b->mixed_frames = take_memory(d, d->info.finest_nodes, 4 * sizeof(float));
+    }
+    return b->centres && b->frames && b->mixed_centres && b->mixed_frames;
+}
+
+void drawing_hold(drawing *d, const awt_forest *forest)
+{
+    drawn_between *b = &d->between;
+    if (!take_between(d)) {
+        return;
+    }
+    take_guides(d, forest);
+    memcpy(b->centres, d->centres, (size_t)d->info.finest_nodes * 3 * sizeof(float));
+    memcpy(b->frames, d->frames, (size_t)d->info.finest_nodes * 4 * sizeof(float));
+    b->head = awt_forest_head(forest);
+    b->time_us = awt_forest_time(forest);
+    b->held_at = awt_forest_sub_steps(forest);
+}
+
+int64_t drawing_show(drawing *d, const awt_forest *forest, int64_t time_us)
+{
+    drawn_between *b = &d->between;
+    const int64_t now_us = awt_forest_time(forest);
+    const bool is_between =
+        b->mixed_frames && b->held_at + 1 == awt_forest_sub_steps(forest) && time_us >= b->time_us && time_us < now_us;
+    b->share = is_between ? (double)(time_us - b->time_us) / (double)(now_us - b->time_us) : 1;
+    return is_between ? time_us : now_us;
+}
+
+/* Pose and time that are shown. */
+static awt_pose show_head(const drawing_job *j)
+{
+    const awt_pose now = awt_forest_head(j->forest);
+    return j->d->between.share < 1 ? between_pose(&j->d->between.head, &now, j->d->between.share) : now;
+}
+
+static int64_t show_time_us(const drawing_job *j)
+{
+    const drawn_between *b = &j->d->between;
+    const int64_t now_us = awt_forest_time(j->forest);
+    return b->share < 1 ? b->time_us + llround((double)(now_us - b->time_us) * b->share) : now_us;
 }
 
 /* Brings guides, and the strands of the form's level, up to date. */
@@ -154,12 +250,12 @@ static awt_status take_strands(const drawing_job *j, int form)
     if (!d->strand_scratch || !level->points) {
         return error_set(j->error, AWT_NO_MEMORY, NULL);
     }
-    take_guides(j);
-    if (!level->made || (moved = find_moved(j, level->made_at)) != NULL) {
-        geom_layout_evaluate(layout, d->groom, moved, d->centres, d->frames, d->strand_scratch, level->points);
+    const float *frames = NULL, *centres = show_guides(j, &frames);
+    if (!level->made || (moved = find_moved(d, j->forest, level->made_at)) != NULL) {
+        geom_layout_evaluate(layout, d->groom, moved, centres, frames, d->strand_scratch, level->points);
     }
     level->made = true;
-    level->made_at = awt_forest_sub_steps(j->forest);
+    level->made_at = shown_at(j);
     return AWT_OK;
 }
 
@@ -183,7 +279,7 @@ static awt_status draw_nodes(const drawing_job *j, view *v)
     if (!d->nodes) {
         return error_set(j->error, AWT_NO_MEMORY, NULL);
     }
-    const awt_pose head = awt_forest_head(j->forest);
+    const awt_pose head = awt_forest_head(j->forest); /* nodes come and go with a step: none lies between two */
     return geom_encode_nodes(d->nodes, awt_forest_nodes(j->forest, d->nodes), &head, awt_forest_time(j->forest),
                              &v->glb, j->error);
 }
@@ -203,7 +299,7 @@ static const kept_frame *keep_frame(const drawing_job *j, int form)
     if (!now || geom_quantise(f->layout, &def, now->numbers, &now->clamped_points, j->error) != AWT_OK) {
         return NULL;
     }
-    drawn_form_keep(f, j->sequence, awt_forest_sub_steps(j->forest));
+    drawn_form_keep(f, j->sequence, shown_at(j));
     return now;
 }
 
@@ -212,18 +308,19 @@ static awt_status draw_whole(const drawing_job *j, const kept_frame *kept, view 
     const drawing *d = j->d;
     drawn_form *f = &j->d->forms[v->name.form];
     const bool guides = form_at(v->name.form)->kind == GEOM_GUIDES;
-    const geom_frame_def def = {.points = guides ? d->centres : d->levels[form_at(v->name.form)->level].points,
-                                .frames = guides ? d->frames : NULL,
+    const float *frames = NULL, *centres = guides ? show_guides(j, &frames) : NULL;
+    const geom_frame_def def = {.points = guides ? centres : d->levels[form_at(v->name.form)->level].points,
+                                .frames = frames,
                                 .quantised = kept ? kept->numbers : NULL,
-                                .head = awt_forest_head(j->forest),
-                                .time_us = awt_forest_time(j->forest),
+                                .head = show_head(j),
+                                .time_us = show_time_us(j),
                                 .unchanged = f->frame ? find_unchanged(j, v->name.form, f->made_at) : NULL,
                                 .previous = f->frame ? &f->frame->glb : NULL};
     geom_frame_stats stats = {0};
     awt_status status = geom_encode(f->layout, f->scratch, &def, &v->glb, &stats, j->error);
     if (status == AWT_OK) {
         v->clamped_points = kept ? kept->clamped_points : stats.clamped_points;
-        drawn_form_remember(f, j->out, v, awt_forest_sub_steps(j->forest));
+        drawn_form_remember(f, j->out, v, shown_at(j));
     }
     return status;
 }
@@ -235,8 +332,8 @@ static awt_status draw_delta(const drawing_job *j, const kept_frame *base, const
                                 .now = kept->numbers,
                                 .base_sequence = base->sequence,
                                 .sequence = kept->sequence,
-                                .head = awt_forest_head(j->forest),
-                                .time_us = awt_forest_time(j->forest)};
+                                .head = show_head(j),
+                                .time_us = show_time_us(j)};
     v->clamped_points = kept->clamped_points;
     return geom_encode_delta(f->layout, f->scratch, &def, &v->glb, NULL, j->error);
 }
@@ -248,7 +345,7 @@ static awt_status prepare(const drawing_job *j, int form, const kept_frame **kep
     awt_status status = drawn_form_use(&j->d->forms[form], j->d->groom, form, j->error);
     *kept = NULL;
     if (status == AWT_OK && form_at(form)->kind == GEOM_GUIDES) {
-        take_guides(j);
+        take_guides(j->d, j->forest);
     } else if (status == AWT_OK) {
         status = take_strands(j, form);
     }

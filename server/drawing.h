@@ -20,9 +20,17 @@ void drawing_destroy(drawing *d);
 uint64_t drawing_bytes(const drawing *d);
 uint64_t drawing_form_bytes(const drawing *d, int form);
 
-/* Adds to `out` the views that are wanted of the forest as it stands, which is that of `sequence`: the state must be
- * the same whenever the sequence is. A delta whose base is not among the last LIMIT_DELTA_BASES frames kept of its form
- * is drawn whole. What cannot be drawn is left out; then the first error comes back, and the other views are there. */
+/* Between two steps: the forest as it stands is what it is shown coming from, until after its next sub-step. Without
+ * memory for that it is shown as it stands. */
+void drawing_hold(drawing *d, const awt_forest *forest);
+/* From now on the forest is shown as at `time_us`: between what was held and what it is now, where it has made just one
+ * sub-step since, else as it stands. Returns the time that is shown. */
+int64_t drawing_show(drawing *d, const awt_forest *forest, int64_t time_us);
+
+/* Adds to `out` the views that are wanted of the forest as it is shown, which is that of `sequence`: that must be the
+ * same whenever the sequence is. Nodes are shown as the forest stands. A delta whose base is not among the last
+ * LIMIT_DELTA_BASES frames kept of its form is drawn whole. What cannot be drawn is left out; then the first error
+ * comes back, and the other views are there. */
 awt_status drawing_draw(drawing *d, const awt_forest *forest, uint64_t sequence, const wishes *wanted, picture *out,
                         awt_error *error);
 

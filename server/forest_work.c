@@ -129,13 +129,32 @@ static const forest_input *take_inputs(forest_work *w)
     return input;
 }
 
-/* A new forest is brought to where it stands: no step, but its active nodes are counted. */
+/* By the daemon's clock: what is shown may lie before the forest's time. */
+static awt_status run_free(forest_work *w, int64_t *shown_us, awt_step_stats *step, awt_error *error)
+{
+    const free_forest d = {w->forest, w->recorder};
+    free_result result;
+    awt_status status = free_run(&d, &w->free, w->inputs, w->wanted.count > 0 ? w->draws : NULL, &result, error);
+    w->dropped_us = result.dropped_us;
+    *step = result.stats;
+    *shown_us = drawing_show(w->draws, w->forest, result.shown_us);
+    return status;
+}
+
+/* To the query's time. A new forest is brought to where it stands: no step, but its active nodes are counted. */
+static awt_status run_to_query(forest_work *w, int64_t *shown_us, awt_step_stats *step, awt_error *error)
+{
+    *shown_us = w->making ? w->making->start.time_us : take_inputs(w)->as.query.time_us;
+    awt_status status = awt_forest_advance(w->forest, *shown_us, step, error);
+    drawing_show(w->draws, w->forest, *shown_us);
+    return status;
+}
+
 static awt_status advance(forest_work *w, awt_error *error)
 {
-    int64_t to_us = w->making ? w->making->start.time_us : take_inputs(w)->as.query.time_us;
-    int64_t begun_us = clock_monotonic_us();
+    int64_t begun_us = clock_monotonic_us(), shown_us = 0;
     awt_step_stats step = {0};
-    awt_status status = awt_forest_advance(w->forest, to_us, &step, error);
+    awt_status status = w->runs ? run_free(w, &shown_us, &step, error) : run_to_query(w, &shown_us, &step, error);
     int64_t ended_us = clock_monotonic_us();
     w->steps = step.steps;
     w->step_us = clock_between_us(begun_us, ended_us);
@@ -148,9 +167,10 @@ static awt_status advance(forest_work *w, awt_error *error)
     w->asleep = step.asleep_trees == w->info.wisp_count[0];
     w->sequence++;
     w->stepped_us = ended_us;
+    w->state_us = awt_forest_time(w->forest);
     w->figures = (struct proto_frame){.forest = w->handle,
                                       .sequence = w->sequence,
-                                      .time_us = step.time_us,
+                                      .time_us = shown_us,
                                       .active_nodes = step.active_nodes,
                                       .splits = step.splits,
                                       .merges = step.merges,
@@ -239,11 +259,12 @@ static void run(forest_work *w, int64_t begun_us)
     awt_status status = AWT_OK;
     w->error = w->draw_error = (awt_error){0};
     w->steps = w->step_us = w->encode_us = 0;
+    w->dropped_us = 0;
     w->stepped = false;
     if (w->making) {
         status = make_hair(w, &w->error);
     }
-    if (status == AWT_OK && (w->making || w->inputs)) {
+    if (status == AWT_OK && (w->making || w->inputs || w->runs)) {
         status = advance(w, &w->error);
     }
     w->error.status = status;
@@ -268,23 +289,6 @@ void forest_work_run(job *work)
 }
 
 /* ---- the end --------------------------------------------------------------------------------------------------- */
-
-uint16_t forest_input_message(forest_input_kind kind)
-{
-    static const uint16_t messages[] = {
-        [FOREST_MOTION] = PROTO_MOTION, [FOREST_PARAMS] = PROTO_SET_PARAMS, [FOREST_QUERY] = PROTO_QUERY,
-        [FOREST_LATEST] = PROTO_QUERY,  [FOREST_BINDING] = PROTO_BINDING,   [FOREST_STATE] = PROTO_SNAPSHOT};
-    return messages[kind];
-}
-
-void forest_inputs_free(forest_input *first)
-{
-    while (first) {
-        forest_input *next = first->next;
-        free(first);
-        first = next;
-    }
-}
 
 void forest_work_fini(forest_work *w)
 {

@@ -7,52 +7,13 @@
 #ifndef FOREST_WORK_H
 #define FOREST_WORK_H
 
-#include "drawing.h"
+#include "free_run.h"
 #include "keeper.h"
 #include "saved.h"
 #include "wishes.h"
 #include "worker.h"
 
 #include <stdatomic.h>
-
-/* Whom to answer: the session may be gone by then. */
-typedef struct origin {
-    uint64_t session; /* its handle */
-    uint64_t request; /* the message's id */
-} origin;
-
-/* The first three act on the forest, in their order. The others look at it as it stands, whenever that is. */
-typedef enum forest_input_kind {
-    FOREST_MOTION,
-    FOREST_PARAMS,
-    FOREST_QUERY,
-    FOREST_LATEST, /* QUERY of the latest frame */
-    FOREST_BINDING,
-    FOREST_STATE
-} forest_input_kind;
-
-/* One message about a forest, waiting for its turn. */
-typedef struct forest_input {
-    struct forest_input *next;
-    forest_input_kind kind;
-    origin from;
-    int64_t arrived_us; /* monotonic clock */
-    awt_error error;    /* written by the worker; status AWT_OK: it was taken */
-    union {
-        awt_motion motion;
-        awt_params params;
-        struct {
-            int64_t time_us; /* simulated; of FOREST_QUERY */
-            int form;
-        } query; /* of FOREST_LATEST too */
-    } as;
-} forest_input;
-
-/* The type of the message that such an input came in. */
-uint16_t forest_input_message(forest_input_kind kind);
-
-/* Frees a whole list. */
-void forest_inputs_free(forest_input *first);
 
 /* What a worker that makes a forest is at: PROGRESS's `stage`. */
 typedef enum forest_stage { FOREST_WAITS, FOREST_STRANDS, FOREST_WISPS, FOREST_DRAWS } forest_stage;
@@ -65,6 +26,8 @@ typedef struct forest_work {
     recipe *making;       /* CREATE; NULL: the forest is made */
     forest_input *inputs; /* motions and parameters, and at the end the query that wants them; owned. NULL: no step */
     forest_input *looks;  /* who wants to see what there is then; owned */
+    bool runs;            /* by the daemon's clock: `free` is the task, and the inputs have no query behind them */
+    free_task free;
     wishes wanted;
     bool wants_binding, wants_state;
     keeper *keeper; /* not NULL: the state is handed to it, with `saving` */
@@ -85,12 +48,15 @@ typedef struct forest_work {
     uint32_t build_us, skipped_strands;
     awt_rebuilt rebuilt;
     uint64_t steps, step_us, encode_us;
+    int64_t dropped_us; /* simulated time that was passed over */
+    int64_t state_us;   /* the forest's time then: with `runs` up to a step after what is shown */
 
     /* the hair, NULL until made */
     awt_groom *groom;
     awt_forest *forest;
     awt_groom_info info;
     drawing *draws;
+    awt_recorder *recorder;     /* of what moves it while it runs by the daemon's clock; NULL: nobody */
     struct proto_frame figures; /* of the last step */
     int64_t stepped_us;         /* monotonic clock at its end */
 } forest_work;

@@ -20,7 +20,7 @@ session_handler session_upload;
 session_handler session_create, session_attach_forest, session_detach_forest, session_destroy, session_list;
 
 /* session_motion.c: what goes into a forest */
-session_handler session_motion, session_set_params;
+session_handler session_motion, session_set_params, session_set_clock;
 
 /* session_frames.c: what comes out of a forest */
 session_handler session_query, session_binding, session_subscribe, session_unsubscribe, session_credit;

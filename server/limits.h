@@ -69,8 +69,14 @@ enum {
 #define LIMIT_FOREST_LOOK_US INT64_C(1000000)  /* from one look for forests that nobody has open to the next */
 #define LIMIT_LINGER_US INT64_C(1000000)       /* after the last byte out, for the peer to close first */
 #define LIMIT_STEP_US INT64_C(10000)           /* a request for a step or a look is late after that */
-#define LIMIT_PROGRESS_US INT64_C(100000)      /* from one PROGRESS to the next */
-#define LIMIT_ACCEPT_PAUSE_US INT64_C(100000)  /* no accept for so long when descriptors have run out */
-#define LIMIT_STOP_FLUSH_US INT64_C(2000000)   /* after SIGTERM, for what is still unsent */
+#define LIMIT_FREE_BEHIND_US \
+    INT64_C(50000) /* simulated, by which a free-running forest may lag before time is dropped */
+#define LIMIT_FREE_UNSEEN_US INT64_C(200000)     /* from one job of a free-running forest to the next: nobody looks; */
+#define LIMIT_FREE_ASLEEP_US INT64_C(250000)     /* it is at rest, and somebody looks; */
+#define LIMIT_FREE_FORGOTTEN_US INT64_C(1000000) /* it is at rest, and nobody looks */
+#define LIMIT_POSE_DELAY_US INT64_C(250000)      /* that a free-running forest's poses are shown later at most */
+#define LIMIT_PROGRESS_US INT64_C(100000)        /* from one PROGRESS to the next */
+#define LIMIT_ACCEPT_PAUSE_US INT64_C(100000)    /* no accept for so long when descriptors have run out */
+#define LIMIT_STOP_FLUSH_US INT64_C(2000000)     /* after SIGTERM, for what is still unsent */
 
 #endif

@@ -33,7 +33,7 @@ static const struct rule {
     {PROTO_UNSUBSCRIBE, IN_OPEN, session_unsubscribe},
     {PROTO_CREDIT, IN_OPEN, session_credit},
     {PROTO_STATS, IN_OPEN, session_stats},
-    {PROTO_SET_CLOCK, IN_OPEN, NULL},
+    {PROTO_SET_CLOCK, IN_OPEN, session_set_clock},
     {PROTO_STEP_MANY, IN_OPEN, NULL},
     {PROTO_SNAPSHOT, IN_OPEN, session_snapshot},
     {PROTO_RESTORE, IN_OPEN, session_restore},

@@ -5,16 +5,20 @@
 #include "limits.h"
 #include "metrics.h"
 #include "random.h"
+#include "turns.h"
 
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-bool registry_init(registry *reg, uint32_t greatest, worker_pool *pool,
-                   void (*wish)(const resident *r, bool steps, wishes *out))
+bool registry_init(registry *reg, const registry_def *def)
 {
-    *reg = (registry){.greatest = greatest, .pool = pool, .wish = wish};
-    return handle_table_init(&reg->handles, greatest);
+    *reg = (registry){.greatest = def->greatest,
+                      .pool = def->pool,
+                      .clock_us = def->clock_us,
+                      .wish = def->wish,
+                      .interval_us = def->interval_us};
+    return handle_table_init(&reg->handles, def->greatest);
 }
 
 static void resident_free(registry *reg, resident *r)
@@ -51,6 +55,7 @@ void registry_fini(registry *reg)
 static void link_resident(registry *reg, resident *r)
 {
     r->waiting_end = &r->waiting;
+    r->importance = 1;
     r->previous = reg->last;
     *(reg->last ? &reg->last->next : &reg->first) = r;
     reg->last = r;
@@ -76,34 +81,6 @@ static resident *resident_create(registry *reg)
     return r;
 }
 
-/* A picture that only the resident still has; NULL: none. */
-static picture *take_spare(resident *r)
-{
-    for (int i = 0; i < LIMIT_PICTURES_SPARE; i++) {
-        picture *p = r->spare[i];
-        if (p && picture_renew(p)) {
-            r->spare[i] = NULL;
-            return p;
-        }
-    }
-    return NULL;
-}
-
-static void submit(registry *reg, resident *r)
-{
-    r->busy = true;
-    r->work.job.run = forest_work_run;
-    r->work.job.class = r->work.making ? JOB_LONG : JOB_STEP;
-    r->work.job.deadline_us = r->work.submitted_us + LIMIT_STEP_US;
-    r->work.handle = r->handle;
-    r->work.sequence = r->sequence;
-    if (!r->work.spare) { /* a job that failed has left its own */
-        r->work.spare = take_spare(r);
-    }
-    metrics_add(METRIC_JOBS_WAITING, 1);
-    worker_pool_submit(reg->pool, &r->work.job);
-}
-
 /* Has a worker make what the recipe says. */
 static void make(registry *reg, resident *r, recipe *making, int64_t now_us)
 {
@@ -113,7 +90,7 @@ static void make(registry *reg, resident *r, recipe *making, int64_t now_us)
     atomic_init(&r->work.note, 0);
     r->work.making = making;
     r->work.submitted_us = now_us;
-    submit(reg, r);
+    turns_submit(reg, r);
 }
 
 awt_status registry_create(registry *reg, recipe *making, origin from, int64_t now_us, awt_error *error)
@@ -187,6 +164,7 @@ static void resident_end(registry *reg, resident *r)
 forest_input *registry_destroy(registry *reg, resident *r)
 {
     ASSERT(!r->doomed && !r->subscriptions);
+    turns_recall(reg, r);
     handle_remove(&reg->handles, r->handle);
     r->handle = 0;
     r->doomed = true;
@@ -201,171 +179,6 @@ forest_input *registry_destroy(registry *reg, resident *r)
     return waiting;
 }
 
-/* Everything up to the first query becomes the job's. */
-static void take_step(resident *r)
-{
-    r->work.inputs = r->waiting;
-    forest_input *query = r->waiting;
-    for (; query->kind != FOREST_QUERY; query = query->next) {
-        r->waiting_inputs--;
-    }
-    r->waiting_queries--;
-    r->waiting = query->next;
-    r->waiting_end = r->waiting ? r->waiting_end : &r->waiting;
-    query->next = NULL;
-    r->work.submitted_us = query->arrived_us;
-    wishes_add(&r->work.wanted, (view_name){.form = query->as.query.form});
-}
-
-/* So do all who want to see the forest. */
-static void take_looks(resident *r)
-{
-    r->work.looks = r->looks;
-    for (const forest_input *look = r->looks; look; look = look->next) {
-        if (look->kind == FOREST_BINDING) {
-            r->work.wants_binding = !r->binding;
-        } else if (look->kind == FOREST_STATE) {
-            r->work.wants_state = true;
-        } else {
-            wishes_add(&r->work.wanted, (view_name){.form = look->as.query.form});
-        }
-        r->work.submitted_us = r->work.inputs ? r->work.submitted_us : look->arrived_us;
-    }
-    r->looks = NULL;
-    r->waiting_looks = 0;
-}
-
-/* The state after this job goes to the disk, if that is due. */
-static void take_keeping(registry *reg, resident *r)
-{
-    r->work.keeper = r->keep_due ? reg->keeper : NULL;
-    r->keep_due = false;
-    if (r->work.keeper) {
-        saved *s = &r->work.saving;
-        *s = (saved){.handle = r->handle};
-        memcpy(s->drive_token, r->drive_token, sizeof s->drive_token);
-        memcpy(s->view_token, r->view_token, sizeof s->view_token);
-        memcpy(s->name, r->name, sizeof s->name);
-    }
-}
-
-/* What waits becomes a job, if no worker has the forest already. */
-static void start_next(registry *reg, resident *r)
-{
-    const bool steps = r->waiting_queries > 0;
-    if (r->busy || !(steps || r->looks || r->redraw || r->keep_due)) {
-        return;
-    }
-    r->work.wanted = (wishes){0};
-    r->work.wants_binding = r->work.wants_state = false;
-    if (steps) {
-        take_step(r);
-    }
-    take_looks(r);
-    reg->wish(r, steps, &r->work.wanted);
-    take_keeping(reg, r);
-    r->redraw = false;
-    submit(reg, r);
-}
-
-static bool push_look(registry *reg, resident *r, forest_input *look)
-{
-    if (r->waiting_looks >= LIMIT_FOREST_QUERIES) {
-        return false;
-    }
-    r->waiting_looks++;
-    look->next = r->looks;
-    r->looks = look;
-    start_next(reg, r);
-    return true;
-}
-
-bool registry_push(registry *reg, resident *r, forest_input *input)
-{
-    if (input->kind > FOREST_QUERY) {
-        return push_look(reg, r, input);
-    }
-    bool query = input->kind == FOREST_QUERY;
-    if (query ? r->waiting_queries >= LIMIT_FOREST_QUERIES : r->waiting_inputs >= LIMIT_FOREST_INPUTS) {
-        return false;
-    }
-    *(query ? &r->waiting_queries : &r->waiting_inputs) += 1;
-    input->next = NULL;
-    *r->waiting_end = input;
-    r->waiting_end = &input->next;
-    start_next(reg, r);
-    return true;
-}
-
-void registry_keep(registry *reg, resident *r)
-{
-    if (reg->keeper && r->ready && !r->doomed && r->sequence != r->kept_sequence) {
-        r->keep_due = true;
-        start_next(reg, r);
-    }
-}
-
-void registry_redraw(registry *reg, resident *r, int64_t now_us)
-{
-    r->redraw = true;
-    if (!r->busy) {
-        r->work.submitted_us = now_us;
-    }
-    start_next(reg, r);
-}
-
-static void keep_spare(resident *r, picture *p)
-{
-    for (int i = 0; i < LIMIT_PICTURES_SPARE; i++) {
-        if (!r->spare[i]) {
-            r->spare[i] = p;
-            return;
-        }
-    }
-    picture_release(r->spare[0]); /* someone has had it for long */
-    r->spare[0] = p;
-}
-
-static void note_sizes(resident *r, const picture *drawn)
-{
-    const uint64_t sequence = drawn->figures.sequence;
-    for (uint32_t i = 0; i < drawn->view_count; i++) {
-        const view *v = &drawn->views[i];
-        form_size *last = v->name.base ? &r->delta[v->name.form] : &r->whole[v->name.form];
-        const bool larger = last->sequence != sequence || v->glb.size > last->bytes;
-        *last = (form_size){.sequence = sequence, .bytes = larger ? v->glb.size : last->bytes};
-    }
-}
-
-static bool shows_more(const picture *drawn, const picture *before)
-{
-    for (uint32_t i = 0; i < drawn->view_count; i++) {
-        if (!picture_view(before, drawn->views[i].name)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool registry_publish(resident *r, picture *drawn)
-{
-    picture *before = r->latest;
-    const bool again = before && before->figures.sequence == drawn->figures.sequence;
-    note_sizes(r, drawn);
-    if (again && !shows_more(drawn, before)) { /* else a client could pile up pictures of one step */
-        keep_spare(r, drawn);
-        return false;
-    }
-    r->latest = drawn;
-    r->sequence = drawn->figures.sequence;
-    if (again) {
-        drawn->earlier = before;
-    } else if (before) {
-        keep_spare(r, before);
-    }
-    return true;
-}
-
 resident *registry_take_back(job *done)
 {
     size_t offset = offsetof(resident, work) + offsetof(forest_work, job);
@@ -375,6 +188,10 @@ resident *registry_take_back(job *done)
     metrics_add(METRIC_HAIR_BYTES, (int64_t)(bytes - r->bytes));
     metrics_add(METRIC_FORESTS_ASLEEP, (int64_t)r->work.asleep - (int64_t)r->asleep);
     r->bytes = bytes;
+    r->state_us = r->work.state_us;
+    if (r->work.runs) {
+        r->shown_us = r->work.free.to_us + r->work.dropped_us;
+    }
     r->asleep = r->work.asleep;
     r->kept_sequence = r->work.keeper ? r->work.sequence : r->kept_sequence;
     for (int i = 0; i < FORM_COUNT && r->work.draws; i++) {
@@ -385,11 +202,11 @@ resident *registry_take_back(job *done)
 
 void registry_continue(registry *reg, resident *r)
 {
-    r->busy = false;
+    r->busy = r->running = false;
     if (r->doomed) {
         resident_end(reg, r);
     } else {
-        start_next(reg, r);
+        turns_next(reg, r);
     }
 }
 

@@ -1,4 +1,4 @@
-/* registry.h: the forests that live in the daemon, and the order in which they are worked on.
+/* registry.h: the forests that live in the daemon. (turns.h: the order in which they are worked on.)
  *
  * A resident belongs to whoever holds the service's lock, except its `work`, which belongs to a worker while `busy`.
  * Messages that act on it wait in `waiting`, in order, whoever sent them; when it is idle, everything up to and
@@ -11,11 +11,16 @@
 
 #include "forest_work.h"
 #include "handles.h"
+#include "pose_delay.h"
 #include "worker.h"
 
 struct subscription;
 
 enum { REGISTRY_TOKEN_SIZE = 16 };
+
+/* Of a forest among others, when there is too much to do. */
+#define IMPORTANCE_LEAST 0.001f
+#define IMPORTANCE_GREATEST 1000.0f
 
 /* Bytes of the last frame of a form. */
 typedef struct form_size {
@@ -31,6 +36,7 @@ typedef struct resident {
     origin creator;         /* whom CREATE is answered to */
     bool ready;             /* made; before, nobody but CREATE's answer may touch it */
     bool busy;              /* a worker has `work` */
+    bool running;           /* that is a turn by the daemon's clock */
     bool doomed;            /* ended; freed when the worker hands `work` back */
     bool tells;             /* is being made for someone who wants PROGRESS */
     uint32_t holders;       /* connections, and parked sessions, that have it open (holdings.h) */
@@ -44,6 +50,14 @@ typedef struct resident {
     forest_input *looks; /* FOREST_LATEST, FOREST_BINDING and FOREST_STATE that wait, the latest first */
     uint32_t waiting_looks;
     bool redraw; /* a subscription wants a view that the latest picture lacks */
+
+    sim_clock clock;        /* SET_CLOCK's */
+    int64_t state_us;       /* simulated time of the forest, when it was last idle */
+    int64_t shown_us;       /* free-running: of its last turn */
+    int64_t asked_us;       /* the latest that a QUERY wanted it brought to */
+    int64_t moves_until_us; /* free-running: when its last pose is reached */
+    pose_delay delay;
+    float importance; /* SET_CLOCK's */
 
     /* what MOTION and SET_PARAMS are checked against: as the forest will be once `waiting` is done */
     bool moved;
@@ -66,6 +80,11 @@ typedef struct resident {
     forest_work work;
 } resident;
 
+/* Adds what the subscriptions want of a job: of its step, or of the present state where it `steps` not. */
+typedef void registry_wish(const resident *r, bool steps, wishes *out);
+/* Between the frames that the subscriptions want of a free-running forest, microseconds; 0: nobody looks. */
+typedef int64_t registry_interval(const resident *r);
+
 typedef struct registry {
     handle_table handles;
     resident *first, *last; /* in order of creation; doomed ones too, until they are freed */
@@ -75,13 +94,21 @@ typedef struct registry {
     uint32_t restoring; /* restored residents that are not ready yet */
     keeper *keeper;     /* NULL: nothing is brought to the disk */
     worker_pool *pool;
-    void (*wish)(const resident *r, bool steps, wishes *out); /* adds what the subscriptions want of the next picture */
+    int64_t (*clock_us)(void);
+    registry_wish *wish;
+    registry_interval *interval_us;
 } registry;
 
-/* Room for `greatest` forests. The pool must outlive every call but registry_fini. `wish` tells what subscriptions want
- * of a job: of its step, or of the present state where it `steps` not. False: no memory. */
-bool registry_init(registry *reg, uint32_t greatest, worker_pool *pool,
-                   void (*wish)(const resident *r, bool steps, wishes *out));
+typedef struct registry_def {
+    uint32_t greatest;         /* forests */
+    worker_pool *pool;         /* must outlive every call but registry_fini */
+    int64_t (*clock_us)(void); /* monotonic */
+    registry_wish *wish;
+    registry_interval *interval_us;
+} registry_def;
+
+/* False: no memory. */
+bool registry_init(registry *reg, const registry_def *def);
 /* Frees every resident. After the pool's threads have ended. Accepts a zeroed one. */
 void registry_fini(registry *reg);
 
@@ -93,25 +120,12 @@ awt_status registry_create(registry *reg, recipe *making, origin from, int64_t n
  * `from` is of the upload's bytes. Errors as above, AWT_BAD_VALUE: its handle is taken or cannot be. */
 awt_status registry_restore(registry *reg, const saved *from, upload *file, int64_t now_us, awt_error *error);
 
-/* Has the forest's state brought to the disk, unless nothing has changed since. Nothing without a keeper. */
-void registry_keep(registry *reg, resident *r);
-
 /* NULL: no such forest, or it is not made yet. */
 resident *registry_find(const registry *reg, uint64_t handle);
 
 /* Ends a resident: its handle is stale at once; it is freed now, or when the worker hands it back. Its subscriptions
  * must have ended. Inputs that still wait are given to the caller, who answers and frees them. */
 forest_input *registry_destroy(registry *reg, resident *r);
-
-/* Queues an input (taken) behind those that wait. False: too many wait; the input is the caller's again. */
-bool registry_push(registry *reg, resident *r, forest_input *input);
-
-/* Has the present state drawn again, for a subscription that lacks its view. */
-void registry_redraw(registry *reg, resident *r, int64_t now_us);
-
-/* The picture that a job drew becomes the latest, or stands on it where it is of the same step. Takes the reference.
- * False: it shows nothing of that step that was not there before, and the latest stays. */
-bool registry_publish(resident *r, picture *drawn);
 
 /* The resident whose job this is, for its results; it stays busy until registry_continue. */
 resident *registry_take_back(job *done);

@@ -21,8 +21,12 @@ bool service_init(service *s, const service_options *options)
                                                     .clock_us = options->clock_us,
                                                     .wake = options->wake,
                                                     .context = options->wake_context});
-    if (s->pool && registry_init(&s->forests, options->max_forests, s->pool, subscriptions_wish) &&
-        handle_table_init(&s->sessions, options->max_sessions)) {
+    const registry_def forests = {.greatest = options->max_forests,
+                                  .pool = s->pool,
+                                  .clock_us = options->clock_us,
+                                  .wish = subscriptions_wish,
+                                  .interval_us = subscriptions_interval_us};
+    if (s->pool && registry_init(&s->forests, &forests) && handle_table_init(&s->sessions, options->max_sessions)) {
         metrics_set(METRIC_WORKERS, options->workers);
         s->forests.keeper = options->keeper;
         return true;

@@ -34,6 +34,8 @@ typedef struct service_options {
 typedef struct service_counters {
     uint64_t frames_encoded, frames_sent, bytes_sent, errors_sent;
     uint64_t steps, step_us, encode_us;
+    uint64_t deadlines_missed; /* jobs that ended later than they should */
+    uint64_t dropped_us;       /* simulated time that free-running forests passed over */
     uint32_t sessions;
 } service_counters;
 

@@ -3,6 +3,7 @@
 #include "log.h"
 #include "metrics.h"
 #include "status.h"
+#include "turns.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -187,7 +188,7 @@ bool session_push(session *s, const proto_message *message, resident *r, forest_
         session_error(s, message->type, message->request, PROTO_ERROR_NO_MEMORY, NULL);
         return false;
     }
-    if (registry_push(&s->shared->forests, r, input)) {
+    if (turns_push(&s->shared->forests, r, input)) {
         return true;
     }
     if (input->kind >= FOREST_QUERY) {
@@ -229,7 +230,7 @@ static subscription *next_due(session *s, int64_t now_us, const view **v)
             return sub;
         }
         if (subscription_asks(sub)) {
-            registry_redraw(&s->shared->forests, sub->forest, now_us);
+            turns_redraw(&s->shared->forests, sub->forest, now_us);
         }
     }
     return NULL;

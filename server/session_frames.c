@@ -1,6 +1,7 @@
 /* session_frames.c: QUERY, BINDING, SUBSCRIBE, UNSUBSCRIBE, CREDIT: what comes out of a forest. (What a worker has to
  * do first is answered in completions.c.) */
 #include "handlers.h"
+#include "turns.h"
 
 /* The form asked for; FORM_NONE: an ERROR was sent. */
 static int find_form(session *s, const proto_message *message, uint8_t kind, uint8_t level)
@@ -28,6 +29,14 @@ static void push(session *s, const proto_message *message, resident *r, forest_i
     }
 }
 
+/* True if the latest frame is as new as a frame of that forest can be: those that run by the daemon's clock are shown
+ * now and then where nobody looks, and a QUERY is somebody who does. */
+static bool is_fresh(const session *s, const resident *r)
+{
+    const int64_t now_us = sim_clock_at(&r->clock, s->shared->options.clock_us());
+    return r->clock.mode != CLOCK_FREE || now_us - r->shown_us <= 2 * AWT_STEP_US;
+}
+
 void session_query(session *s, const proto_message *message)
 {
     const struct proto_query *query = &message->as.query;
@@ -36,8 +45,14 @@ void session_query(session *s, const proto_message *message)
     if (form == FORM_NONE) {
         return;
     }
+    if (!query->latest && r->clock.mode != CLOCK_LOCK_STEP) {
+        session_error(s, message->type, message->request, PROTO_ERROR_BAD_TIME,
+                      "the forest %s: ask for the latest, or put it in lock-step with SET_CLOCK",
+                      r->clock.mode == CLOCK_FREE ? "runs by the daemon's clock" : "is paused");
+        return;
+    }
     const view *v = query->latest ? picture_view(r->latest, (view_name){.form = form}) : NULL;
-    if (v) {
+    if (v && is_fresh(s, r)) {
         session_picture(s, r->latest, v, message->request);
         return;
     }
@@ -96,6 +111,7 @@ void session_subscribe(session *s, const proto_message *message)
     proto_message reply = {.type = PROTO_SUBSCRIBE_REPLY, .request = message->request};
     reply.as.subscribe_reply.subscription = place->handle;
     session_send(s, &reply);
+    turns_attend(&s->shared->forests, r);
 }
 
 /* The subscription that the message names; NULL: an ERROR was sent. */
@@ -127,6 +143,10 @@ void session_credit(session *s, const proto_message *message)
                       "frame %llu was never sent on this subscription", (unsigned long long)message->as.credit.have);
         return;
     }
+    const bool had_none = sub->credit == 0;
     subscription_credit(sub, message->as.credit.frames);
     session_stream(s);
+    if (had_none) {
+        turns_attend(&s->shared->forests, sub->forest);
+    }
 }

@@ -81,12 +81,27 @@ void subscriptions_wish(const resident *forest, bool steps, wishes *out)
         if (!steps && (!s->waiting || subscription_view(s))) {
             continue;
         }
+        if (forest->clock.mode == CLOCK_FREE && s->credit == 0) {
+            continue; /* more frames will come without being asked for */
+        }
         if (s->budget > 0) {
             wish_within_budget(s, out);
         } else {
             wish(s, s->form, out);
         }
     }
+}
+
+int64_t subscriptions_interval_us(const resident *forest)
+{
+    int64_t shortest_us = 0;
+    for (const subscription *s = forest->subscriptions; s; s = s->next_of_forest) {
+        const int64_t interval_us = s->interval_us > AWT_STEP_US ? s->interval_us : AWT_STEP_US;
+        if (s->credit > 0 && (shortest_us == 0 || interval_us < shortest_us)) {
+            shortest_us = interval_us;
+        }
+    }
+    return shortest_us;
 }
 
 /* The newest delta of a form that the receiver can use, else the whole frame; NULL: the picture has neither. */
@@ -155,7 +170,9 @@ picture *subscription_take(subscription *s, const view *v, int64_t now_us, uint3
     s->waiting = NULL;
     s->skipped = 0;
     s->credit--;
-    s->due_us = s->interval_us ? now_us + s->interval_us : 0;
+    /* A frame that went out a little late does not delay the next: so the rate is held. */
+    const int64_t next_us = s->due_us + s->interval_us;
+    s->due_us = s->interval_us == 0 ? 0 : next_us > now_us ? next_us : now_us + s->interval_us;
     bases_sent(&s->bases, taken->figures.sequence, v->name.form, v->name.base);
     return taken;
 }

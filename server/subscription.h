@@ -46,6 +46,9 @@ void subscription_end(subscription *s);
  * they wait with and that lacks their view. */
 void subscriptions_wish(const resident *forest, bool steps, wishes *out);
 
+/* The shortest interval between frames that one of them wants which has credit; 0: none has. */
+int64_t subscriptions_interval_us(const resident *forest);
+
 /* A picture that came out of the forest: waits in every subscription on it. One of the same step as the last goes to
  * those alone that still wait with that. */
 void subscriptions_offer(resident *forest, picture *offered);

@@ -2,6 +2,7 @@
 #include "upkeep.h"
 #include "log.h"
 #include "making.h"
+#include "turns.h"
 
 #include <string.h>
 
@@ -43,7 +44,7 @@ static void end_left_forests(service *shared, int64_t now_us)
 void upkeep_keep_all(service *shared)
 {
     for (resident *r = shared->forests.first; r; r = r->next) {
-        registry_keep(&shared->forests, r);
+        turns_keep(&shared->forests, r);
     }
 }
 

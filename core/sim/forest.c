@@ -230,6 +230,19 @@ awt_status awt_forest_advance(awt_forest *f, int64_t time_us, awt_step_stats *st
     return AWT_OK;
 }
 
+awt_status awt_forest_skip(awt_forest *f, int64_t time_us, awt_error *error)
+{
+    if (time_us > AWT_MAX_TIME_US || time_us < f->time_us) {
+        return error_set(error, AWT_BAD_TIME, "the forest is at %.6f s already, past %.6f s", (double)f->time_us * 1e-6,
+                         (double)time_us * 1e-6);
+    }
+    const int64_t span_us = time_us - f->time_us;
+    if (span_us > 0) {
+        step_skip(f, time_us, (float)((double)(span_us < AWT_STEP_US ? span_us : AWT_STEP_US) * 1e-6));
+    }
+    return AWT_OK;
+}
+
 int64_t awt_forest_time(const awt_forest *f)
 {
     return f->time_us;

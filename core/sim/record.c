@@ -22,11 +22,16 @@ typedef struct record_advance {
     uint64_t hash; /* of the state then */
 } record_advance;
 
+typedef struct record_skip {
+    int64_t time_us;
+} record_skip;
+
 /* Operation, its number in the file, its payload. */
-#define RECORD_OPS(X)        \
-    X(move, 1, awt_motion)   \
-    X(params, 2, awt_params) \
-    X(advance, 3, record_advance)
+#define RECORD_OPS(X)             \
+    X(move, 1, awt_motion)        \
+    X(params, 2, awt_params)      \
+    X(advance, 3, record_advance) \
+    X(skip, 4, record_skip)
 
 struct awt_replay {
     codec from; /* the records */
@@ -79,6 +84,13 @@ static awt_status walk_advance(codec *c, record_advance *advance, awt_error *err
     (void)error;
     codec_i64(c, &advance->time_us);
     codec_u64(c, &advance->hash);
+    return AWT_OK;
+}
+
+static awt_status walk_skip(codec *c, record_skip *skip, awt_error *error)
+{
+    (void)error;
+    codec_i64(c, &skip->time_us);
     return AWT_OK;
 }
 
@@ -157,6 +169,15 @@ awt_status awt_recorder_advance(awt_recorder *recorder, int64_t time_us, awt_ste
     return status;
 }
 
+awt_status awt_recorder_skip(awt_recorder *recorder, int64_t time_us, awt_error *error)
+{
+    awt_status status = awt_forest_skip(recorder->forest, time_us, error);
+    if (status == AWT_OK) {
+        write_skip(recorder, &(record_skip){time_us});
+    }
+    return status;
+}
+
 /* ---- replaying -------------------------------------------------------------------------------------------------- */
 
 static awt_status replay_move(awt_replay *replay, const awt_motion *motion, awt_error *error)
@@ -183,6 +204,11 @@ static awt_status replay_advance(awt_replay *replay, const record_advance *advan
     }
     replay->steps++;
     return AWT_OK;
+}
+
+static awt_status replay_skip(awt_replay *replay, const record_skip *skip, awt_error *error)
+{
+    return awt_forest_skip(replay->forest, skip->time_us, error);
 }
 
 static awt_status replay_damaged(const awt_replay *replay, awt_error *error)

@@ -41,6 +41,25 @@ static void step_pose(awt_forest *f, double sample_us, float dt_s, track_pose be
     step_orient(f);
 }
 
+void step_skip(awt_forest *f, int64_t end_us, float dt_s)
+{
+    const track_pose *head = &f->pose[TRACK_HEAD];
+    const dquat from = head->orientation;
+    track_pose nearly[TRACK_COUNT];
+    bool teleported = track_sample(&f->track, (double)end_us - (double)dt_s * 1e6, nearly);
+    teleported = track_sample(&f->track, (double)end_us, f->pose) || teleported;
+    rest_carry(f, from, head->orientation, false);
+    if (teleported) {
+        memcpy(nearly, f->pose, sizeof nearly);
+    }
+    f->frame_velocity = dvec3_scale(dvec3_sub(head->position, nearly[TRACK_HEAD].position), 1.0 / (double)dt_s);
+    f->frame_acceleration = (vec3){0, 0, 0};
+    f->head_spin = track_spin(nearly[TRACK_HEAD].orientation, head->orientation, (double)dt_s);
+    obstacle_place(f, nearly, dt_s); /* nothing is swept on the way */
+    step_orient(f);
+    f->time_us = end_us;
+}
+
 /* Greatest |length - target| / target of the tree's links; a link under 5 mm counts as 5 mm long, because positions
  * are floats that step by 0.03 um. */
 static float step_link_error(const awt_forest *f, const tree *t)

@@ -102,9 +102,10 @@ TEST(proto_bytes_are_little_endian_and_packed)
     clock.as.set_clock.forest = 2;
     clock.as.set_clock.mode = 1;
     clock.as.set_clock.rate = -0.5f;
-    static const unsigned char clock_payload[] = "\x02\0\0\0\0\0\0\0\x01\0\0\0\xBF";
-    CHECK_INT(proto_encode(&clock, bytes, sizeof bytes), PROTO_HEADER_SIZE + 13);
-    CHECK_BYTES(bytes + PROTO_HEADER_SIZE, clock_payload, 13);
+    static const unsigned char clock_payload[] = "\x02\0\0\0\0\0\0\0\x01\0\0\0\xBF\0\0\x80\x3F";
+    clock.as.set_clock.importance = 1;
+    CHECK_INT(proto_encode(&clock, bytes, sizeof bytes), PROTO_HEADER_SIZE + 17);
+    CHECK_BYTES(bytes + PROTO_HEADER_SIZE, clock_payload, 17);
 
     proto_message upload = {.type = PROTO_UPLOAD};
     upload.as.upload.piece = (proto_blob){(const unsigned char *)"xyz", 3};
