@@ -93,6 +93,16 @@ static void check_scenario(const char *scenario, const char *more)
     CHECK_INT(daemon_stop(&daemon), 0);
 }
 
+static void check_failure(outcome *o, int code, const char *said)
+{
+    CHECK_INT(o->code, code);
+    CHECK(strstr(o->said, said) != NULL);
+    if (!strstr(o->said, said)) {
+        CHECK_TEXT(o->said, said);
+    }
+    free(o);
+}
+
 TEST(e2e_load_query_asks_by_the_clock_and_as_fast_as_it_can)
 {
     check_scenario("query", "");
@@ -104,6 +114,21 @@ TEST(e2e_load_stream_reaches_every_viewer)
     check_scenario("stream", "");
     check_scenario("stream", "--closed --motion still --threads 3");
     check_scenario("stream", "--deltas --motion jump --credit 3");
+}
+
+TEST(e2e_load_stream_watches_heads_that_run_by_the_daemons_clock)
+{
+    daemon_process daemon;
+    unsigned long long answers = 0;
+    CHECK(daemon_start(&daemon, 1, NULL));
+    outcome *o = run_load_at(&daemon, "--scenario stream --free --moving 0.5 --duration 1 --connections 4 --forests 2 "
+                                      "--strands 200 --style short --rate 20 --hdr -");
+    const char *total = strstr(o->said, "Total count    =");
+    CHECK_TEXT(o->code == 0 && total && strstr(o->said, "errors: 0\n") ? "" : o->said, "");
+    CHECK(total && sscanf(total, "Total count    = %llu", &answers) == 1 && answers > 0);
+    free(o);
+    CHECK_INT(daemon_stop(&daemon), 0);
+    check_failure(run_load("--free"), 2, "--free is for stream");
 }
 
 TEST(e2e_load_mixed_moves_watches_and_makes_heads)
@@ -158,16 +183,6 @@ TEST(e2e_load_writes_percentiles_and_measures_without_a_floor)
     remove(path);
     free(o);
     CHECK_INT(daemon_stop(&daemon), 0);
-}
-
-static void check_failure(outcome *o, int code, const char *said)
-{
-    CHECK_INT(o->code, code);
-    CHECK(strstr(o->said, said) != NULL);
-    if (!strstr(o->said, said)) {
-        CHECK_TEXT(o->said, said);
-    }
-    free(o);
 }
 
 TEST(e2e_load_says_plainly_why_it_cannot_begin)
