@@ -13,6 +13,7 @@ static const struct {
 } SUBCOMMANDS[] = {
     {"play", awtctl_play, "moves a head of hair through a clip, frame by frame, and writes GLB files"},
     {"inspect", awtctl_inspect, "says what is in a GLB file that awtd made"},
+    {"clock", awtctl_clock, "lets a forest run by the daemon's clock, pauses it, or gives it to its driver"},
     {"styles", awtctl_styles, "lists the daemon's built-in styles and all parameters"},
     {"stats", awtctl_stats, "shows the daemon's counts and times"},
     {"ping", awtctl_ping, "measures the way to the daemon and back"},

@@ -48,6 +48,7 @@ awtctl_exit awtctl_play(int argc, char *const *argv);
 awtctl_exit awtctl_inspect(int argc, char *const *argv);
 awtctl_exit awtctl_stats(int argc, char *const *argv);
 awtctl_exit awtctl_ping(int argc, char *const *argv);
+awtctl_exit awtctl_clock(int argc, char *const *argv);
 awtctl_exit awtctl_styles(int argc, char *const *argv);
 
 #endif

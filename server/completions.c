@@ -172,14 +172,17 @@ static const forest_input *report_refused(service *shared, const forest_input *i
 static void answer(service *shared, const forest_input *asked, picture *shown, const view *v, const awt_error *error)
 {
     session *asker = session_find(shared, asked->from);
-    if (!asker) {
-        return;
+    if (!asker || (asked->kind == FOREST_QUERY && asked->as.query.promised &&
+                   !promises_keep(&asker->promised, asked->from.request, asked->as.query.promised))) {
+        return; /* gone, or it has been answered by its deadline */
     }
     asker->pending--;
     if (v) {
         session_picture(asker, shown, v, asked->from.request);
     } else {
-        session_error_awt(asker, forest_input_message(asked->kind), asked->from.request, error);
+        const bool many = asked->kind == FOREST_QUERY && asked->as.query.promised != 0;
+        session_error_awt(asker, many ? PROTO_STEP_MANY : forest_input_message(asked->kind), asked->from.request,
+                          error);
     }
 }
 

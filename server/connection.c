@@ -54,13 +54,13 @@ static void sink_message(void *context, const proto_message *message)
     }
 }
 
-static void sink_picture(void *context, picture *shown, const view *v, uint64_t request, uint32_t skipped)
+static void sink_picture(void *context, picture *shown, const view *v, const delivery *to)
 {
     connection *c = context;
     before_output(c);
     if (c->output_failed) {
         picture_release(shown);
-    } else if (!output_add_picture(&c->out, shown, v, request, skipped)) {
+    } else if (!output_add_picture(&c->out, shown, v, to)) {
         end(c, "no memory");
     }
 }

@@ -32,7 +32,9 @@ typedef struct forest_input {
         struct {
             int64_t time_us; /* simulated; of FOREST_QUERY */
             int form;
-        } query; /* of FOREST_LATEST too */
+            int64_t deadline_us; /* monotonic; of FOREST_QUERY, 0: as usual */
+            uint64_t promised;   /* the forest, where the asker was promised an answer (promises.h) */
+        } query;                 /* of FOREST_LATEST too */
     } as;
 } forest_input;
 

@@ -23,7 +23,8 @@ session_handler session_create, session_attach_forest, session_detach_forest, se
 session_handler session_motion, session_set_params, session_set_clock;
 
 /* session_frames.c: what comes out of a forest */
-session_handler session_query, session_binding, session_subscribe, session_unsubscribe, session_credit;
+session_handler session_query, session_step_many, session_binding, session_subscribe, session_unsubscribe,
+    session_credit;
 
 /* session_state.c: a forest's whole state */
 session_handler session_snapshot, session_restore;

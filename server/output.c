@@ -13,8 +13,7 @@ struct output_segment {
     output_segment *next;
     picture *shown; /* NULL: a message, whole in `bytes` */
     const view *v;  /* of `shown` */
-    uint64_t request;
-    uint32_t skipped;
+    delivery to;
     size_t size; /* of `bytes`; of a frame that has not begun: 0 */
     unsigned char bytes[];
 };
@@ -78,14 +77,14 @@ bool output_add_message(output *out, const proto_message *message)
     return true;
 }
 
-bool output_add_picture(output *out, picture *shown, const view *v, uint64_t request, uint32_t skipped)
+bool output_add_picture(output *out, picture *shown, const view *v, const delivery *to)
 {
     output_segment *segment = malloc(sizeof *segment + OUTPUT_FRAME_HEAD);
     if (!segment) {
         picture_release(shown);
         return false;
     }
-    *segment = (output_segment){.shown = shown, .v = v, .request = request, .skipped = skipped};
+    *segment = (output_segment){.shown = shown, .v = v, .to = *to};
     append(out, segment);
     return true;
 }
@@ -93,11 +92,10 @@ bool output_add_picture(output *out, picture *shown, const view *v, uint64_t req
 /* The fields of the frame that goes out now. */
 static void begin_frame(output *out, output_segment *segment, int64_t now_us)
 {
-    proto_message message = {.request = segment->request};
-    picture_message(segment->shown, segment->v, &message);
+    proto_message message;
+    picture_message(segment->shown, segment->v, &segment->to, &message);
     if (message.type == PROTO_FRAME) {
         message.as.frame.age_us = clock_between_us(segment->shown->stepped_us, now_us);
-        message.as.frame.skipped = segment->skipped;
         message.as.frame.last_write_us = out->last_write_us;
     }
     segment->size = proto_encode_head(&message, segment->bytes, OUTPUT_FRAME_HEAD);

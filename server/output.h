@@ -27,7 +27,7 @@ void output_discard(output *out);
 /* False: no memory. */
 bool output_add_message(output *out, const proto_message *message);
 /* A view of a picture; takes the reference. False: no memory. */
-bool output_add_picture(output *out, picture *shown, const view *v, uint64_t request, uint32_t skipped);
+bool output_add_picture(output *out, picture *shown, const view *v, const delivery *to);
 
 /* Sends until all is sent (NET_DONE), the socket takes no more (NET_LATER), `most` bytes went out (NET_DONE, and not
  * empty), or the connection is broken (NET_FAILED). */

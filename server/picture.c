@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+enum { FRAME_STALE = 1 /* bit of FRAME.flags */ };
+
 picture *picture_create(void)
 {
     picture *p = calloc(1, sizeof *p);
@@ -70,8 +72,9 @@ const view *picture_view(const picture *p, view_name name)
     return NULL;
 }
 
-void picture_message(const picture *p, const view *v, proto_message *out)
+void picture_message(const picture *p, const view *v, const delivery *to, proto_message *out)
 {
+    *out = (proto_message){.request = to->request};
     const proto_blob bytes = {.bytes = v->glb.bytes, .length = (uint32_t)v->glb.size};
     if (v->name.form == PICTURE_BINDING) {
         out->type = PROTO_BINDING_REPLY;
@@ -89,6 +92,8 @@ void picture_message(const picture *p, const view *v, proto_message *out)
     out->as.frame = p->figures;
     out->as.frame.kind = f->kind;
     out->as.frame.level = f->level;
+    out->as.frame.flags = to->stale ? FRAME_STALE : 0;
+    out->as.frame.skipped = to->skipped;
     out->as.frame.base = v->name.base;
     out->as.frame.clamped_points = v->clamped_points;
     out->as.frame.encode_us = v->encode_us;

@@ -19,6 +19,13 @@ typedef struct view_name {
     uint64_t base; /* sequence of the frame that it is a delta against; 0: whole in itself */
 } view_name;
 
+/* What differs from receiver to receiver. */
+typedef struct delivery {
+    uint64_t request;
+    uint32_t skipped; /* frames left out before it */
+    bool stale;       /* older than was asked for */
+} delivery;
+
 enum { PICTURE_BINDING = FORM_COUNT, PICTURE_STATE };
 
 typedef struct view {
@@ -54,9 +61,8 @@ void picture_drop(picture *p);
 /* NULL: there is no such view of this step. */
 const view *picture_view(const picture *p, view_name name);
 
-/* FRAME, BINDING_REPLY or SNAPSHOT_REPLY with this view; `out`'s request and what differs from receiver to receiver is
- * the caller's.
- */
-void picture_message(const picture *p, const view *v, proto_message *out);
+/* FRAME, BINDING_REPLY or SNAPSHOT_REPLY with this view, as it is delivered; FRAME's times of sending are the
+ * caller's. */
+void picture_message(const picture *p, const view *v, const delivery *to, proto_message *out);
 
 #endif

@@ -6,7 +6,7 @@
 
 enum { IN_GREETING = 1 << SESSION_GREETING, IN_AUTH = 1 << SESSION_AUTH, IN_OPEN = 1 << SESSION_OPEN };
 
-/* What a client may send. A handler that is NULL: not built yet, answered with NOT_SUPPORTED. */
+/* What a client may send. */
 static const struct rule {
     uint16_t type;
     unsigned states;
@@ -34,7 +34,7 @@ static const struct rule {
     {PROTO_CREDIT, IN_OPEN, session_credit},
     {PROTO_STATS, IN_OPEN, session_stats},
     {PROTO_SET_CLOCK, IN_OPEN, session_set_clock},
-    {PROTO_STEP_MANY, IN_OPEN, NULL},
+    {PROTO_STEP_MANY, IN_OPEN, session_step_many},
     {PROTO_SNAPSHOT, IN_OPEN, session_snapshot},
     {PROTO_RESTORE, IN_OPEN, session_restore},
 };
@@ -97,9 +97,5 @@ void protocol_receive(session *s, const proto_header *header, const unsigned cha
         return;
     }
     const struct rule *rule = rule_of(header->type);
-    if (rule->handler) {
-        rule->handler(s, &message);
-    } else {
-        session_error(s, header->type, header->request, PROTO_ERROR_NOT_SUPPORTED, NULL);
-    }
+    rule->handler(s, &message);
 }

@@ -55,6 +55,7 @@ void session_fini(session *s)
         return;
     }
     session_end_subscriptions(s);
+    promises_free(&s->promised);
     leave_holdings(s);
     handle_remove(&s->shared->sessions, s->handle);
     s->shared->counters.sessions--;
@@ -122,7 +123,7 @@ void session_bye(session *s, const char *reason)
 void session_picture(session *s, picture *shown, const view *v, uint64_t request)
 {
     if (s->state != SESSION_CLOSING) {
-        s->sink.picture(s->sink.context, picture_hold(shown), v, request, 0);
+        s->sink.picture(s->sink.context, picture_hold(shown), v, &(delivery){.request = request});
     }
 }
 
@@ -245,9 +246,9 @@ void session_stream(session *s)
         if (!sub) {
             return;
         }
-        uint32_t skipped = 0;
-        picture *shown = subscription_take(sub, v, now_us, &skipped);
-        s->sink.picture(s->sink.context, shown, v, sub->request, skipped);
+        delivery to = {.request = sub->request};
+        picture *shown = subscription_take(sub, v, now_us, &to.skipped);
+        s->sink.picture(s->sink.context, shown, v, &to);
     }
 }
 
@@ -300,14 +301,34 @@ void session_heard(session *s)
     s->pinged = false;
 }
 
+/* Answers what was promised for now with what there is; the steps go on. */
+static void break_promises(session *s, int64_t now_us)
+{
+    for (promise late; promises_break(&s->promised, now_us, &late);) {
+        const resident *r = registry_find(&s->shared->forests, late.forest);
+        const view *v = r ? picture_view(r->latest, (view_name){.form = late.form}) : NULL;
+        s->pending--;
+        if (v && s->state != SESSION_CLOSING) {
+            s->sink.picture(s->sink.context, picture_hold(r->latest), v,
+                            &(delivery){.request = late.request, .stale = true});
+        } else {
+            session_error(s, PROTO_STEP_MANY, late.request, PROTO_ERROR_BUSY,
+                          "the deadline has passed, and of no step there is a frame of that kind yet");
+        }
+    }
+}
+
 void session_tick(session *s)
 {
-    watch(s, s->shared->options.clock_us());
+    const int64_t now_us = s->shared->options.clock_us();
+    watch(s, now_us);
+    break_promises(s, now_us);
     session_stream(s);
 }
 
 int64_t session_due_us(const session *s)
 {
-    const int64_t stream_us = stream_due_us(s), quiet_us = quiet_due_us(s);
-    return stream_us < quiet_us ? stream_us : quiet_us;
+    const int64_t stream_us = stream_due_us(s), quiet_us = quiet_due_us(s), promised_us = promises_due_us(s->promised);
+    const int64_t own_us = stream_us < quiet_us ? stream_us : quiet_us;
+    return own_us < promised_us ? own_us : promised_us;
 }

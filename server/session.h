@@ -7,6 +7,7 @@
 #define SESSION_H
 
 #include "limits.h"
+#include "promises.h"
 #include "service.h"
 #include "subscription.h"
 
@@ -16,7 +17,7 @@ typedef struct session_sink {
     /* Encodes and sends. The message's texts are good only during the call. */
     void (*message)(void *context, const proto_message *message);
     /* Sends a FRAME, or BINDING_REPLY, of one of the picture's views; takes the reference. */
-    void (*picture)(void *context, picture *shown, const view *v, uint64_t request, uint32_t skipped);
+    void (*picture)(void *context, picture *shown, const view *v, const delivery *to);
     /* True if all that was given before is gone. */
     bool (*drained)(void *context);
 } session_sink;
@@ -39,6 +40,7 @@ typedef struct session {
     int64_t heard_us;                  /* when the last message came */
     bool pinged;                       /* and has been asked whether it is there since */
     uint32_t pending;                  /* requests that wait for a worker */
+    promise *promised;                 /* answers with a deadline */
     uint32_t last_write_us;            /* written by whoever is behind the sink: see FRAME */
 
     holdings holds;

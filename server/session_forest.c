@@ -83,7 +83,8 @@ static void refuse_waiting(service *shared, forest_input *waiting)
 {
     for (const forest_input *input = waiting; input; input = input->next) {
         session *asker = input->kind >= FOREST_QUERY ? session_find(shared, input->from) : NULL;
-        if (asker) {
+        const uint64_t promised = input->kind == FOREST_QUERY ? input->as.query.promised : 0;
+        if (asker && (!promised || promises_keep(&asker->promised, input->from.request, promised))) {
             asker->pending--;
             session_error(asker, forest_input_message(input->kind), input->from.request, PROTO_ERROR_NO_FOREST,
                           "the forest was destroyed before this query had its turn");

@@ -37,6 +37,54 @@ static bool is_fresh(const session *s, const resident *r)
     return r->clock.mode != CLOCK_FREE || now_us - r->shown_us <= 2 * AWT_STEP_US;
 }
 
+/* An ERROR says so where the forest is not the driver's to advance. */
+static bool may_advance(session *s, const proto_message *message, const resident *r)
+{
+    if (r->clock.mode != CLOCK_LOCK_STEP) {
+        session_error(s, message->type, message->request, PROTO_ERROR_BAD_TIME,
+                      "the forest %s: ask for the latest, or put it in lock-step with SET_CLOCK",
+                      r->clock.mode == CLOCK_FREE ? "runs by the daemon's clock" : "is paused");
+        return false;
+    }
+    return true;
+}
+
+/* One of several: answered by the deadline with what there is. */
+static void step_one(session *s, const proto_message *message, const struct proto_step_request *one, int form)
+{
+    resident *r = session_resident(s, message, one->forest, true);
+    if (!r || !may_advance(s, message, r)) {
+        return;
+    }
+    const int64_t deadline_us = s->shared->options.clock_us() + (int64_t)message->as.step_many.deadline_us;
+    const promise made = {.request = message->request, .forest = one->forest, .form = form, .deadline_us = deadline_us};
+    forest_input *input = promises_make(&s->promised, &made) ? session_input(s, message, FOREST_QUERY) : NULL;
+    if (input) {
+        input->as.query.time_us = one->time_us;
+        input->as.query.form = form;
+        input->as.query.deadline_us = deadline_us;
+        input->as.query.promised = one->forest;
+    }
+    if (session_push(s, message, r, input)) {
+        s->pending++;
+    } else {
+        promises_keep(&s->promised, message->request, one->forest);
+    }
+}
+
+void session_step_many(session *s, const proto_message *message)
+{
+    const struct proto_step_many *many = &message->as.step_many;
+    if (many->forests.count == 0) {
+        session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE, "there is no forest in the list");
+        return;
+    }
+    const int form = find_form(s, message, many->kind, many->level);
+    for (uint16_t i = 0; form != FORM_NONE && i < many->forests.count; i++) {
+        step_one(s, message, &many->forests.items[i], form);
+    }
+}
+
 void session_query(session *s, const proto_message *message)
 {
     const struct proto_query *query = &message->as.query;
@@ -45,10 +93,7 @@ void session_query(session *s, const proto_message *message)
     if (form == FORM_NONE) {
         return;
     }
-    if (!query->latest && r->clock.mode != CLOCK_LOCK_STEP) {
-        session_error(s, message->type, message->request, PROTO_ERROR_BAD_TIME,
-                      "the forest %s: ask for the latest, or put it in lock-step with SET_CLOCK",
-                      r->clock.mode == CLOCK_FREE ? "runs by the daemon's clock" : "is paused");
+    if (!query->latest && !may_advance(s, message, r)) {
         return;
     }
     const view *v = query->latest ? picture_view(r->latest, (view_name){.form = form}) : NULL;

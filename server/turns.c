@@ -36,6 +36,7 @@ static void take_step(resident *r)
     r->waiting_end = r->waiting ? r->waiting_end : &r->waiting;
     query->next = NULL;
     r->work.submitted_us = query->arrived_us;
+    r->work.job.deadline_us = query->as.query.deadline_us;
     wishes_add(&r->work.wanted, (view_name){.form = query->as.query.form});
 }
 
@@ -74,6 +75,7 @@ static void take_keeping(registry *reg, resident *r)
 static void start_now(registry *reg, resident *r, bool steps)
 {
     r->work.runs = false;
+    r->work.job.deadline_us = 0;
     if (r->looks) {
         r->work.submitted_us = r->looks->arrived_us;
     }
@@ -83,7 +85,9 @@ static void start_now(registry *reg, resident *r, bool steps)
     take_looks(r);
     reg->wish(r, steps, &r->work.wanted);
     r->work.job.not_before_us = 0;
-    r->work.job.deadline_us = r->work.submitted_us + LIMIT_STEP_US;
+    if (r->work.job.deadline_us == 0) {
+        r->work.job.deadline_us = r->work.submitted_us + LIMIT_STEP_US;
+    }
     turns_submit(reg, r);
 }
 

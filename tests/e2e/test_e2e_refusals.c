@@ -253,13 +253,6 @@ TEST(e2e_bad_requests_get_numbered_errors_and_the_connection_goes_on)
     size = tfx_file(file, 100, 100, 1); /* a straight row of roots is no head */
     CHECK_INT(upload_error(client, file, size), PROTO_ERROR_NO_HEAD);
 
-    static const uint16_t not_built[] = {PROTO_STEP_MANY};
-    for (size_t k = 0; k < sizeof not_built / sizeof not_built[0]; k++) {
-        proto_message m = {.type = not_built[k]}, answer;
-        awtclient_error error = {0};
-        CHECK(!awtclient_call(client, &m, &answer, &error));
-        CHECK_INT(error.code, PROTO_ERROR_NOT_SUPPORTED);
-    }
     proto_message query = {.type = PROTO_QUERY}, answer;
     awtclient_error error = {0};
     query.as.query.forest = forest; /* not attached here */

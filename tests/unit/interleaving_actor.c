@@ -120,11 +120,10 @@ static void sink_message(void *context, const proto_message *message)
     see(context, message);
 }
 
-static void sink_picture(void *context, picture *shown, const view *v, uint64_t request, uint32_t skipped)
+static void sink_picture(void *context, picture *shown, const view *v, const delivery *to)
 {
-    proto_message message = {.request = request};
-    (void)skipped;
-    picture_message(shown, v, &message);
+    proto_message message;
+    picture_message(shown, v, to, &message);
     see(context, &message);
     picture_release(shown);
 }

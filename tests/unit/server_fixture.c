@@ -58,13 +58,10 @@ static void sink_message(void *context, const proto_message *message)
     keep(context, message);
 }
 
-static void sink_picture(void *context, picture *shown, const view *v, uint64_t request, uint32_t skipped)
+static void sink_picture(void *context, picture *shown, const view *v, const delivery *to)
 {
-    proto_message message = {.request = request};
-    picture_message(shown, v, &message);
-    if (message.type == PROTO_FRAME) {
-        message.as.frame.skipped = skipped;
-    }
+    proto_message message;
+    picture_message(shown, v, to, &message);
     keep(context, &message);
     picture_release(shown);
 }

@@ -169,8 +169,8 @@ TEST(server_output_sends_frames_whole_through_a_narrow_socket)
     proto_message ping = {.type = PROTO_PING};
     picture *shown = make_picture(GLB);
     CHECK(output_add_message(&out, &ping));
-    CHECK(output_add_picture(&out, picture_hold(shown), shown->views, 5, 2));
-    CHECK(output_add_picture(&out, picture_hold(shown), shown->views, 6, 0));
+    CHECK(output_add_picture(&out, picture_hold(shown), shown->views, &(delivery){.request = 5, .skipped = 2}));
+    CHECK(output_add_picture(&out, picture_hold(shown), shown->views, &(delivery){.request = 6}));
     CHECK(out.bytes > 2 * (size_t)GLB);
     unsigned char *bytes = malloc(CAPACITY);
     size_t used = 0;
@@ -213,7 +213,7 @@ TEST(server_output_to_a_peer_that_is_gone_fails_without_a_signal)
     close(ends[1]);
     output out = {0};
     picture *shown = make_picture(100);
-    CHECK(output_add_picture(&out, shown, shown->views, 1, 0));
+    CHECK(output_add_picture(&out, shown, shown->views, &(delivery){.request = 1}));
     CHECK_INT(output_write(&out, ends[0], 1000, test_clock_us), NET_FAILED);
     output_fini(&out); /* frees the picture */
     close(ends[0]);

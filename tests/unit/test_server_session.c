@@ -155,25 +155,6 @@ TEST(server_skips_unknown_messages_and_names_required_ones)
     service_fini(&shared);
 }
 
-TEST(server_says_what_it_does_not_do_yet)
-{
-    service shared;
-    CHECK(fake_service_init(&shared, 0, 4, false));
-    fake_client *client = fake_client_open(&shared);
-    static const uint16_t types[] = {PROTO_STEP_MANY};
-    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
-        proto_message message = {.type = types[i], .request = 50 + i};
-        CHECK(fake_send(client, &message));
-        const proto_message *reply = fake_expect(client, PROTO_ERROR);
-        CHECK_INT(reply->as.error.code, PROTO_ERROR_NOT_SUPPORTED);
-        CHECK_INT(reply->as.error.about, types[i]);
-        CHECK_U64(reply->request, 50 + i);
-    }
-    CHECK_INT(client->talk.state, SESSION_OPEN);
-    fake_client_destroy(client);
-    service_fini(&shared);
-}
-
 TEST(server_refuses_messages_out_of_order)
 {
     service shared;

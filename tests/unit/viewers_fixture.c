@@ -59,17 +59,16 @@ static void decode(viewers *v, viewer *w, const struct proto_frame *frame)
     }
 }
 
-static void link_picture(void *context, picture *shown, const view *which, uint64_t request, uint32_t skipped)
+static void link_picture(void *context, picture *shown, const view *which, const delivery *to)
 {
     viewers_link *l = context;
-    viewer *w = &l->all->each[request - 1];
-    proto_message message = {.request = request};
-    picture_message(shown, which, &message);
+    viewer *w = &l->all->each[to->request - 1];
+    proto_message message;
+    picture_message(shown, which, to, &message);
     const struct proto_frame *frame = &message.as.frame;
     CHECK(frame->sequence > w->last);
     w->last = frame->sequence;
     w->frame = *frame;
-    w->frame.skipped = skipped;
     w->frame.glb.bytes = NULL;
     w->bytes += frame->glb.length;
     w->largest = frame->glb.length > w->largest ? frame->glb.length : w->largest;
