@@ -57,7 +57,8 @@ static void stats_print(const proto_message *answer)
     char version[65];
     proto_str_copy(s->version, version, sizeof version);
     printf("%-16s %s, up %.1f s\n", "daemon", version, (double)s->uptime_us * 1e-6);
-    printf("%-16s %u\n%-16s %u\n%-16s %u\n", "workers", s->workers, "connections", s->connections, "forests",
+    printf("%-16s %u and %u for input and output\n", "workers", s->workers, s->io_threads);
+    printf("%-16s %u, %u of them idle\n%-16s %u\n", "connections", s->connections, s->idle_connections, "forests",
            s->forests);
     printf("%-16s %" PRIu64 " encoded, %" PRIu64 " sent, %" PRIu64 " bytes\n", "frames", s->frames_encoded,
            s->frames_sent, s->bytes_sent);
@@ -78,7 +79,9 @@ static void stats_json(jsonout *json, const void *answer)
     jsonout_text(json, "version", version);
     jsonout_unsigned(json, "uptime_us", s->uptime_us);
     jsonout_unsigned(json, "workers", s->workers);
+    jsonout_unsigned(json, "io_threads", s->io_threads);
     jsonout_unsigned(json, "connections", s->connections);
+    jsonout_unsigned(json, "idle_connections", s->idle_connections);
     jsonout_unsigned(json, "forests", s->forests);
     jsonout_unsigned(json, "frames_encoded", s->frames_encoded);
     jsonout_unsigned(json, "frames_sent", s->frames_sent);

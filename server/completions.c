@@ -136,6 +136,7 @@ static void take_created(service *shared, resident *r)
     session *asker = session_find(shared, r->creator);
     if (asker) {
         asker->pending--;
+        session_prompt(asker);
     }
     shared->forests.telling -= r->tells;
     r->tells = false;
@@ -177,6 +178,7 @@ static void answer(service *shared, const forest_input *asked, picture *shown, c
         return; /* gone, or it has been answered by its deadline */
     }
     asker->pending--;
+    session_prompt(asker);
     if (v) {
         session_picture(asker, shown, v, asked->from.request);
     } else {

@@ -13,7 +13,7 @@
 /* The options as they were given, before they are checked against each other. */
 typedef struct given {
     const char *listen, *admin, *state_directory, *token_file, *level, *format, *file;
-    long long workers, max_forests, max_connections;
+    long long workers, io_threads, max_forests, max_connections;
     long long resume_grace_s, forest_grace_s, quiet_s;
     bool no_auth, admin_open, check, print;
 } given;
@@ -26,6 +26,13 @@ static long long processors(void)
 #else
     return 1;
 #endif
+}
+
+/* Small poll sets beat few threads. */
+static long long io_threads(void)
+{
+    long long count = LIMIT_IO_THREADS_PER_CORE * processors();
+    return count < LIMIT_IO_THREADS_GREATEST ? count : LIMIT_IO_THREADS_GREATEST;
 }
 
 /* How many of the options, at the end of the table, only the command line takes. */
@@ -92,6 +99,7 @@ static bool take_log(const given *g, config *out, char *error, size_t error_size
 static option_result take(given *g, const option_program *program, config *out, char *error, size_t error_size)
 {
     out->workers = (unsigned)g->workers;
+    out->io_threads = (unsigned)g->io_threads;
     out->max_forests = (uint32_t)g->max_forests;
     out->max_connections = (uint32_t)g->max_connections;
     out->no_auth = g->no_auth;
@@ -143,6 +151,8 @@ static option_result read_options(int count, char *const *arguments, given *g, c
     const option options[] = {
         {"listen", OPTION_TEXT, "HOST:PORT", &g->listen, 0, 0, "where to listen; port 0: any"},
         {"workers", OPTION_INTEGER, "N", &g->workers, 1, LIMIT_WORKERS_GREATEST, "threads that simulate"},
+        {"io-threads", OPTION_INTEGER, "N", &g->io_threads, 1, LIMIT_IO_THREADS_GREATEST,
+         "threads that serve busy connections; one more has those that are idle"},
         {"state-dir", OPTION_TEXT, "DIR", &g->state_directory, 0, 0,
          "what the daemon keeps; else $AWTD_STATE_DIR, $XDG_STATE_HOME/awtd, ~/.local/state/awtd"},
         {"token-file", OPTION_TEXT, "FILE", &g->token_file, 0, 0, "the token; else DIR/token, made on first start"},
@@ -194,6 +204,7 @@ option_result config_read(int count, char *const *arguments, config *out, char *
                .level = "info",
                .format = "text",
                .workers = processors(),
+               .io_threads = io_threads(),
                .max_forests = LIMIT_FORESTS,
                .max_connections = LIMIT_CONNECTIONS,
                .resume_grace_s = LIMIT_RESUME_GRACE_S,

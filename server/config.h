@@ -13,7 +13,7 @@ typedef struct config {
     char host[CONFIG_HOST], port[CONFIG_PORT];
     char admin_host[CONFIG_HOST], admin_port[CONFIG_PORT]; /* where HTTP is answered; no port: nowhere */
     bool admin_open;                                       /* other machines may reach that */
-    unsigned workers;
+    unsigned workers, io_threads;
     uint32_t max_forests, max_connections;
     char state_directory[LIMIT_PATH]; /* made only if the token file is in it */
     char token_file[LIMIT_PATH];

@@ -2,7 +2,7 @@
 #include "daemon.h"
 #include "clock.h"
 #include "completions.h"
-#include "loop.h"
+#include "door.h"
 #include "net.h"
 #include "token.h"
 #include "base/version.h"
@@ -40,51 +40,64 @@ static bool open_token(const config *asked, service_options *options, char *erro
 }
 
 /* Scripts wait for this line: it says that connections are taken, and on which port. */
-static void announce(const config *asked, const char *bound)
+static void announce(const config *asked, const char *bound, uint64_t descriptors)
 {
     printf("listening on %s\n", bound);
     fflush(stdout);
     char token[LOG_QUOTED];
-    log_write(LOG_INFO, "started", "version=%s listen=%s workers=%u token=%s", AWTD_VERSION, bound, asked->workers,
+    log_write(LOG_INFO, "started", "version=%s listen=%s workers=%u io_threads=%u descriptors=%llu token=%s",
+              AWTD_VERSION, bound, asked->workers, asked->io_threads, (unsigned long long)descriptors,
               asked->no_auth ? "none" : log_quote(asked->token_file, strlen(asked->token_file), token));
 }
 
-typedef struct serving {
-    service shared;
-    wake *bell;
-} serving;
+/* Each connection has a descriptor, and each loop two. */
+static void check_descriptors(const config *asked, uint64_t descriptors)
+{
+    uint64_t wanted = asked->max_connections + LIMIT_CONNECTIONS_REFUSED + 2 * (uint64_t)asked->io_threads + 32;
+    if (descriptors < wanted) {
+        log_write(LOG_WARN, "few descriptors", "connections=%lu descriptors=%llu wanted=%llu",
+                  (unsigned long)asked->max_connections, (unsigned long long)descriptors, (unsigned long long)wanted);
+    }
+}
 
 /* What a worker does with the job that it has just done: brings the results to those who asked. */
 static void on_job_done(void *context)
 {
-    serving *s = context;
-    service_lock(&s->shared);
-    completions_take(&s->shared);
-    service_unlock(&s->shared);
-    wake_ring(s->bell);
+    service *shared = context;
+    service_lock(shared);
+    completions_take(shared);
+    connections_send_replies(shared);
+    service_unlock(shared);
 }
 
-static bool serve(const config *asked, service_options *options, wake *bell, int listener, const char *bound,
+static bool serve(const config *asked, service_options *options, const wake *bell, int listener, const char *bound,
                   char *error, size_t error_size)
 {
-    serving all = {.bell = bell};
-    loop turns;
+    service shared = {0};
+    loops inside = {0};
+    door entrance = {.shared = &shared,
+                     .inside = &inside,
+                     .own = {.bell = *bell},
+                     .listener = listener,
+                     .greatest = asked->max_connections};
+    const uint64_t descriptors = net_raise_descriptors();
     options->wake = on_job_done;
-    options->wake_context = &all;
-    if (!service_init(&all.shared, options)) {
-        snprintf(error, error_size, "not enough memory or threads for %u workers; give --workers N", asked->workers);
+    options->wake_context = &shared;
+    if (!service_init(&shared, options) || !loops_start(&inside, &shared, asked->io_threads)) {
+        snprintf(error, error_size,
+                 "not enough memory, threads or descriptors for %u workers and %u I/O threads; give --workers N and "
+                 "--io-threads N",
+                 asked->workers, asked->io_threads);
+        service_fini(&shared);
         close(listener);
         return false;
     }
-    if (!loop_init(&turns, &all.shared, bell, listener, asked->max_connections)) {
-        snprintf(error, error_size, "not enough memory for %lu connections", (unsigned long)asked->max_connections);
-        service_fini(&all.shared);
-        return false;
-    }
-    announce(asked, bound);
-    loop_run(&turns);
-    loop_fini(&turns);
-    service_fini(&all.shared); /* may wait for a groom that is being built */
+    check_descriptors(asked, descriptors);
+    announce(asked, bound, descriptors);
+    door_run(&entrance);
+    loops_stop(&inside);
+    service_fini(&shared); /* may wait for a groom that is being built */
+    loops_fini(&inside);
     log_write(LOG_INFO, "stopped", "listen=%s", bound);
     return true;
 }
@@ -93,6 +106,7 @@ bool daemon_run(const config *asked, char *error, size_t error_size)
 {
     static wake bell; /* outlives the call: a signal may come at any time */
     service_options options = {.workers = asked->workers,
+                               .io_threads = asked->io_threads,
                                .max_forests = asked->max_forests,
                                .max_sessions = asked->max_connections + LIMIT_CONNECTIONS_REFUSED,
                                .resume_grace_us = asked->resume_grace_us,

@@ -12,6 +12,15 @@ void input_fini(input *in)
     *in = (input){0};
 }
 
+void input_rest(input *in)
+{
+    if (in->begin == in->end) {
+        free(in->bytes);
+        in->bytes = NULL;
+        in->capacity = in->begin = in->end = 0;
+    }
+}
+
 static bool resize(input *in, size_t capacity)
 {
     unsigned char *bytes = realloc(in->bytes, capacity);

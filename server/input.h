@@ -24,6 +24,9 @@ typedef enum input_event {
 /* Frees; accepts a zeroed one. A zeroed input is empty. */
 void input_fini(input *in);
 
+/* Gives the buffer back if nothing is in it. */
+void input_rest(input *in);
+
 /* Room for the bytes that come next, at least one, in a buffer of at least `capacity`, which is PROTO_HEADER_SIZE or
  * more. Not while input_ready. 0: no memory. */
 size_t input_room(input *in, size_t capacity, unsigned char **room);

@@ -7,8 +7,8 @@
 
 enum {
     /* the daemon as a whole; the defaults of the options and the greatest values they take */
-    LIMIT_CONNECTIONS = 256,
-    LIMIT_CONNECTIONS_GREATEST = 4096,
+    LIMIT_CONNECTIONS = 1024,
+    LIMIT_CONNECTIONS_GREATEST = 65536,
     LIMIT_CONNECTIONS_REFUSED = 16, /* beyond the greatest number: those who are being told that there are too many */
     LIMIT_FORESTS = 256,
     LIMIT_FORESTS_GREATEST = 65536,
@@ -17,7 +17,11 @@ enum {
     LIMIT_FOREST_GRACE_S = 3600,
     LIMIT_QUIET_S = 120,
     LIMIT_GRACE_S_GREATEST = 31536000,
-    LIMIT_BACKLOG = 128,           /* connections that wait for accept */
+    LIMIT_IO_THREADS_GREATEST = 256,
+    LIMIT_IO_THREADS_PER_CORE = 4, /* unless --io-threads says otherwise */
+    LIMIT_HOT_SET = 32,            /* busy connections of one I/O thread, before the next one gets any */
+    LIMIT_HOT_NEWCOMERS = 128,     /* connections of an I/O thread that takes new ones; beyond, they begin as idle */
+    LIMIT_BACKLOG = 1024,          /* connections that wait for accept */
     LIMIT_PATH = 1024,             /* bytes of the state directory's and the token file's path */
     LIMIT_CONFIG_FILE = 64 * 1024, /* bytes of a file of settings */
 
@@ -53,7 +57,11 @@ enum {
     LIMIT_TURN_ACCEPTS = 16,
     LIMIT_TURN_READ = 256 * 1024,   /* bytes from one connection */
     LIMIT_TURN_WRITE = 1024 * 1024, /* bytes to one connection */
-    LIMIT_TURN_MESSAGES = 64        /* of one connection */
+    LIMIT_TURN_MESSAGES = 64,       /* of one connection */
+
+    /* what is idle: a connection that has said nothing but LIMIT_IDLE_MESSAGES in a second, of those that only keep it
+     * open, for LIMIT_IDLE_US */
+    LIMIT_IDLE_MESSAGES = 3
 };
 
 /* Bytes. */
@@ -69,6 +77,8 @@ enum {
 #define LIMIT_FOREST_LOOK_US INT64_C(1000000)  /* from one look for forests that nobody has open to the next */
 #define LIMIT_LINGER_US INT64_C(1000000)       /* after the last byte out, for the peer to close first */
 #define LIMIT_STEP_US INT64_C(10000)           /* a request for a step or a look is late after that */
+#define LIMIT_IDLE_US INT64_C(2000000)         /* after so long a connection is idle */
+#define LIMIT_NEWCOMER_US INT64_C(250000)      /* and after so long, if it has never been busy */
 #define LIMIT_FREE_BEHIND_US \
     INT64_C(50000) /* simulated, by which a free-running forest may lag before time is dropped */
 #define LIMIT_FREE_UNSEEN_US INT64_C(200000)     /* from one job of a free-running forest to the next: nobody looks; */
@@ -78,5 +88,9 @@ enum {
 #define LIMIT_PROGRESS_US INT64_C(100000)        /* from one PROGRESS to the next */
 #define LIMIT_ACCEPT_PAUSE_US INT64_C(100000)    /* no accept for so long when descriptors have run out */
 #define LIMIT_STOP_FLUSH_US INT64_C(2000000)     /* after SIGTERM, for what is still unsent */
+
+/* Nanoseconds for each idle connection that pass before all of them are looked at again, so that the looking takes a
+ * small part of one processor however many there are. */
+#define LIMIT_COLD_PAUSE_NS INT64_C(2500)
 
 #endif

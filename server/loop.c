@@ -1,88 +1,186 @@
 /* loop.c: see loop.h. */
 #include "loop.h"
 #include "log.h"
-#include "upkeep.h"
-#include "net.h"
 
-#include <errno.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
-enum { SLOT_WAKE, SLOT_LISTENER, SLOT_CONNECTIONS };
+enum { LOOP_FIRST_ROOM = 64 };
 
-bool loop_init(loop *l, service *shared, wake *bell, int listener, uint32_t greatest)
+/* ---- seats ------------------------------------------------------------------------------------------------------- */
+
+static bool make_room(loop *l, uint32_t room)
 {
-    uint32_t room = greatest + LIMIT_CONNECTIONS_REFUSED;
-    *l = (loop){.shared = shared,
-                .bell = bell,
-                .listener = listener,
-                .greatest = greatest,
-                .room = room,
-                .connections = calloc(room, sizeof *l->connections),
-                .polled = calloc(room + SLOT_CONNECTIONS, sizeof *l->polled)};
-    if (!l->connections || !l->polled) {
-        loop_fini(l);
+    if (room <= l->room) {
+        return true;
+    }
+    connection **seated = realloc(l->seated, room * sizeof *seated);
+    l->seated = seated ? seated : l->seated;
+    struct pollfd *polled = realloc(l->polled, (room + 1) * sizeof *polled);
+    l->polled = polled ? polled : l->polled;
+    if (!seated || !polled || !deadlines_reserve(&l->waits, room)) {
         return false;
     }
+    l->room = room;
     return true;
 }
 
-static void stop_listening(loop *l)
+bool loop_init(loop *l, service *shared, homes *all, home *own)
 {
-    if (l->listener >= 0) {
-        close(l->listener);
-        l->listener = -1;
+    *l = (loop){.shared = shared, .all = all, .own = own};
+    if (!make_room(l, LOOP_FIRST_ROOM)) {
+        loop_fini(l);
+        return false;
     }
+    l->polled[0] = (struct pollfd){.fd = own->bell.ends[0], .events = POLLIN};
+    return true;
 }
 
 void loop_fini(loop *l)
 {
-    if (l->count > 0) {
+    free(l->seated);
+    free(l->polled);
+    deadlines_fini(&l->waits);
+    *l = (loop){0};
+}
+
+/* False: no memory. */
+static bool take_seat(loop *l, connection *c)
+{
+    if (l->count == l->room && !make_room(l, 2 * l->room)) {
+        return false;
+    }
+    l->seated[l->count++] = c;
+    connection_seat_of(c)->slot = l->count;
+    l->polled[l->count] = (struct pollfd){.fd = -1};
+    return true;
+}
+
+static void give_up_seat(loop *l, connection *c)
+{
+    connection_seat *seat = connection_seat_of(c);
+    connection *last = l->seated[l->count - 1];
+    l->polled[seat->slot] = l->polled[l->count];
+    l->seated[seat->slot - 1] = last;
+    connection_seat_of(last)->slot = seat->slot;
+    l->count--;
+    seat->slot = 0;
+    deadlines_set(&l->waits, &seat->wait, INT64_MAX);
+}
+
+/* What the last turn left to wait for. */
+static void keep_word(loop *l, connection *c)
+{
+    connection_seat *seat = connection_seat_of(c);
+    int events = connection_events(c);
+    int64_t wake_us = connection_wake_us(c);
+    l->polled[seat->slot].fd = events < 0 ? -1 : connection_descriptor(c);
+    l->polled[seat->slot].events = (short)(events < 0 ? 0 : events);
+    if (wake_us != seat->wait.at_us) {
+        deadlines_set(&l->waits, &seat->wait, wake_us);
+    }
+}
+
+/* ---- turns ------------------------------------------------------------------------------------------------------- */
+
+/* One that is over ends here, if nobody sends to it; else a turn follows. */
+static void end_connection(loop *l, connection *c)
+{
+    service_lock(l->shared);
+    bool closed = connection_close(c);
+    service_unlock(l->shared);
+    if (closed) {
+        give_up_seat(l, c);
+        connection_destroy(c);
+    }
+}
+
+/* It moves where connections of its kind live, if nobody sends to it. */
+static void move_connection(loop *l, connection *c)
+{
+    service_lock(l->shared);
+    bool leaves = !l->all->stopping && connection_leave(c);
+    if (leaves) {
+        give_up_seat(l, c);
+        connection_enter(c, l->own->is_cold ? homes_hot(l->all) : homes_cold(l->all));
+    }
+    service_unlock(l->shared);
+}
+
+static void give_turn(loop *l, connection *c, int revents)
+{
+    connection_turn(c, revents);
+    keep_word(l, c);
+    switch (connection_fate_of(c)) {
+    case CONNECTION_STAYS:
+        break;
+    case CONNECTION_MOVES:
+        move_connection(l, c);
+        break;
+    case CONNECTION_ENDS:
+        end_connection(l, c);
+        break;
+    }
+}
+
+/* There is no memory for its seat. */
+static void refuse_seat(loop *l, connection *c)
+{
+    service_lock(l->shared);
+    connection_drop(c, "no memory");
+    bool closed = connection_close(c); /* else it comes again */
+    service_unlock(l->shared);
+    if (closed) {
+        connection_destroy(c);
+    }
+}
+
+/* To those that poll named, `ready` at most. From the end: whoever goes, one that had its turn takes the seat. */
+static void give_polled_turns(loop *l, int ready)
+{
+    for (uint32_t slot = l->count; slot > 0 && ready > 0; slot--) {
+        if (l->polled[slot].revents) {
+            ready--;
+            give_turn(l, l->seated[slot - 1], l->polled[slot].revents);
+        }
+    }
+}
+
+/* To those that stand in the home's list now. */
+static void give_told_turns(loop *l, uint32_t told)
+{
+    while (told-- > 0) {
         service_lock(l->shared);
-        while (l->count > 0) {
-            connection_destroy(l->connections[--l->count]);
+        connection *c = home_take(l->own);
+        const bool arrives = connection_seat_of(c)->slot == 0, late = arrives && l->all->stopping;
+        if (late) {
+            connection_end(c, "the daemon stops");
         }
         service_unlock(l->shared);
+        if (arrives && !take_seat(l, c)) {
+            refuse_seat(l, c);
+            continue;
+        }
+        give_turn(l, c, 0);
     }
-    stop_listening(l);
-    free(l->connections);
-    free(l->polled);
-    *l = (loop){.listener = -1};
+}
+
+static void give_due_turns(loop *l)
+{
+    int64_t now_us = l->shared->options.clock_us();
+    for (uint32_t n = l->waits.count; n > 0; n--) { /* nobody has two */
+        const deadline *d = deadlines_first(&l->waits);
+        if (!d || d->at_us > now_us) {
+            return;
+        }
+        give_turn(l, d->owner, 0);
+    }
 }
 
 /* ---- sleeping ---------------------------------------------------------------------------------------------------- */
 
-static bool may_accept(const loop *l, int64_t now_us)
-{
-    return l->listener >= 0 && l->count < l->room && now_us >= l->accept_from_us;
-}
-
-static void fill_slots(loop *l, int64_t now_us)
-{
-    l->polled[SLOT_WAKE] = (struct pollfd){.fd = l->bell->ends[0], .events = POLLIN};
-    l->polled[SLOT_LISTENER] = (struct pollfd){.fd = may_accept(l, now_us) ? l->listener : -1, .events = POLLIN};
-    for (uint32_t i = 0; i < l->count; i++) {
-        int events = connection_events(l->connections[i]);
-        l->polled[SLOT_CONNECTIONS + i] =
-            (struct pollfd){.fd = events < 0 ? -1 : connection_descriptor(l->connections[i]),
-                            .events = (short)(events < 0 ? 0 : events)};
-    }
-}
-
 /* Milliseconds that poll may sleep; -1: as long as nothing happens. */
-static int sleep_ms(const loop *l, int64_t now_us, int64_t until_us)
+static int sleep_ms(int64_t now_us, int64_t until_us)
 {
-    if (l->accept_from_us > now_us && l->accept_from_us < until_us) {
-        until_us = l->accept_from_us;
-    }
-    for (uint32_t i = 0; i < l->count; i++) {
-        if (connection_has_work(l->connections[i]) || connection_is_over(l->connections[i])) {
-            return 0;
-        }
-        int64_t deadline_us = connection_deadline_us(l->connections[i]);
-        until_us = deadline_us < until_us ? deadline_us : until_us;
-    }
     if (until_us == INT64_MAX) {
         return -1;
     }
@@ -90,96 +188,101 @@ static int sleep_ms(const loop *l, int64_t now_us, int64_t until_us)
     return left_us <= 0 ? 0 : left_us >= 60000000 ? 60000 : (int)((left_us + 999) / 1000);
 }
 
-/* ---- one turn ---------------------------------------------------------------------------------------------------- */
-
-static void accept_connections(loop *l, int64_t now_us)
+/* The time at which there is something to do whatever poll says. */
+static int64_t next_due_us(const loop *l, int64_t until_us)
 {
-    for (int n = 0; n < LIMIT_TURN_ACCEPTS && l->count < l->room; n++) {
-        int fd = -1;
-        char peer[NET_ADDRESS];
-        net_result result = net_accept(l->listener, &fd, peer);
-        if (result == NET_EXHAUSTED) {
-            log_write(LOG_ERROR, "cannot accept", "why=\"%s\"", strerror(errno));
-            l->accept_from_us = now_us + LIMIT_ACCEPT_PAUSE_US;
-        }
-        if (result == NET_LATER || result == NET_EXHAUSTED) {
-            return;
-        }
-        connection *c = result == NET_DONE ? connection_create(l->shared, fd, peer) : NULL;
-        if (!c) {
-            continue;
-        }
-        if (l->count >= l->greatest) {
-            log_write(LOG_WARN, "too many connections", "peer=%s", peer);
-            connection_refuse(c, PROTO_ERROR_BUSY, "the daemon has as many connections as it takes");
-        }
-        l->connections[l->count++] = c;
-    }
+    const deadline *first = deadlines_first(&l->waits);
+    return first && first->at_us < until_us ? first->at_us : until_us;
 }
 
-static void remove_ended(loop *l)
+/* False: there is work in the list, or the end has come. */
+static bool fall_asleep(loop *l)
 {
-    for (uint32_t i = l->count; i-- > 0;) {
-        if (connection_is_over(l->connections[i])) {
-            connection_destroy(l->connections[i]);
-            l->connections[i] = l->connections[--l->count];
-        }
-    }
-}
-
-/* `all`: a worker's result may concern any of them. */
-static void give_turns(loop *l, uint32_t count, bool all, int64_t now_us)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        connection *c = l->connections[i];
-        int revents = l->polled[SLOT_CONNECTIONS + i].revents;
-        if (revents || all || connection_has_work(c) || connection_deadline_us(c) <= now_us) {
-            connection_turn(c, revents);
-        }
-    }
-}
-
-/* Under the lock, which it lets go while it sleeps. */
-static void turn(loop *l, int64_t until_us)
-{
-    int64_t before_us = l->shared->options.clock_us();
-    uint32_t count = l->count;
-    int64_t due_us = upkeep_due_us(l->shared);
-    fill_slots(l, before_us);
-    int patience_ms = sleep_ms(l, before_us, due_us < until_us ? due_us : until_us);
-    service_unlock(l->shared);
-    int ready = poll(l->polled, SLOT_CONNECTIONS + count, patience_ms);
     service_lock(l->shared);
-    if (ready < 0) { /* EINTR, or no memory for a moment: nobody has anything to say */
-        for (uint32_t i = 0; i < SLOT_CONNECTIONS + count; i++) {
-            l->polled[i].revents = 0;
-        }
+    const bool idle = l->own->told == 0 && l->all->stopping == l->stops;
+    if (idle) {
+        home_falls_asleep(l->own);
     }
-    int64_t now_us = l->shared->options.clock_us();
-    bool results = l->polled[SLOT_WAKE].revents != 0;
-    wake_clear(l->bell);
-    upkeep_do(l->shared, now_us);
-    give_turns(l, count, results, now_us);
-    if (l->polled[SLOT_LISTENER].revents & POLLIN) {
-        accept_connections(l, now_us);
+    service_unlock(l->shared);
+    return idle;
+}
+
+/* How many stand in the home's list. */
+static uint32_t wake_up(loop *l)
+{
+    service_lock(l->shared);
+    home_wakes(l->own);
+    const uint32_t told = l->own->told;
+    l->stops = l->all->stopping;
+    service_unlock(l->shared);
+    return told;
+}
+
+/* Sleeps until something happens; how many sockets poll named. */
+static int look(loop *l, int64_t until_us)
+{
+    int64_t now_us = l->shared->options.clock_us(), due_us = next_due_us(l, until_us);
+    const bool sockets = now_us >= l->look_from_us; /* else the bell alone */
+    if (!sockets && l->look_from_us < due_us) {
+        due_us = l->look_from_us;
     }
-    remove_ended(l);
+    const int patience_ms = fall_asleep(l) ? sleep_ms(now_us, due_us) : 0;
+    int ready = poll(l->polled, 1 + (sockets ? l->count : 0), patience_ms);
+    if (ready <= 0) { /* EINTR, or no memory for a moment: nobody has anything to say */
+        return 0;
+    }
+    if (l->polled[0].revents) {
+        wake_clear(&l->own->bell);
+        ready--;
+    }
+    if (sockets && l->own->is_cold && l->count > LIMIT_HOT_SET) {
+        l->look_from_us = l->shared->options.clock_us() + l->count * LIMIT_COLD_PAUSE_NS / 1000;
+    }
+    return sockets ? ready : 0;
+}
+
+/* False: the loop is to stop. */
+static bool turn(loop *l, int64_t until_us)
+{
+    int ready = look(l, until_us);
+    uint32_t told = wake_up(l);
+    give_polled_turns(l, ready);
+    give_told_turns(l, told);
+    give_due_turns(l);
+    return !l->stops;
+}
+
+/* ---- running ----------------------------------------------------------------------------------------------------- */
+
+static void say_bye(loop *l)
+{
+    service_lock(l->shared);
+    for (uint32_t i = 0; i < l->count; i++) {
+        connection_end(l->seated[i], "the daemon stops");
+    }
+    service_unlock(l->shared);
+}
+
+static void drop_all(loop *l)
+{
+    service_lock(l->shared);
+    for (uint32_t i = 0; i < l->count; i++) {
+        connection_drop(l->seated[i], "the daemon stops");
+    }
+    service_unlock(l->shared);
 }
 
 void loop_run(loop *l)
 {
-    service_lock(l->shared);
-    while (!wake_stop_asked()) {
-        turn(l, INT64_MAX);
+    while (turn(l, INT64_MAX)) {
     }
-    log_write(LOG_INFO, "stopping", "connections=%lu", (unsigned long)l->count);
-    stop_listening(l);
-    for (uint32_t i = 0; i < l->count; i++) {
-        connection_end(l->connections[i], "the daemon stops");
-    }
+    say_bye(l);
     int64_t until_us = l->shared->options.clock_us() + LIMIT_STOP_FLUSH_US;
-    while (l->count > 0 && l->shared->options.clock_us() < until_us) {
+    while (l->own->count > 0) { /* nobody comes any more: everyone who has entered is here or in the list */
+        if (l->shared->options.clock_us() >= until_us) {
+            drop_all(l);
+            until_us = INT64_MAX;
+        }
         turn(l, until_us);
     }
-    service_unlock(l->shared);
 }

@@ -1,33 +1,38 @@
-/* loop.h: the I/O thread: sleeps in poll, and gives every connection its turn.
+/* loop.h: one I/O thread: sleeps in poll, and gives its connections their turns.
  *
- * Slot 0 of the poll set is the wake pipe, slot 1 the listener, the rest the connections. Connections come and go only
- * after every slot has been looked at. The loop holds the service's lock except while it sleeps; whoever has given a
- * connection something to send rings the pipe. */
+ * Slot 0 of the poll set is the bell of the loop's home, the rest its connections, one slot each, kept as the turns
+ * leave them: a loop does nothing for a connection about which nothing is known. Turns are given to those that poll
+ * names, to those that stand in the home's list, and to those whose time has come.
+ *
+ * A hot loop hands a connection that has become idle to the cold one, the cold one hands one that has become busy to
+ * the hot loop with the fewest. The cold loop looks at all its sockets only now and then when it has many, so that
+ * however often one of them says something, looking costs a small part of a processor. */
 #ifndef LOOP_H
 #define LOOP_H
 
 #include "connection.h"
-#include "wake.h"
 
 #include <poll.h>
 
 typedef struct loop {
     service *shared;
-    wake *bell;
-    int listener; /* -1: none is accepted any more */
-    uint32_t greatest, room, count;
-    connection **connections; /* [room], [count] in use */
-    struct pollfd *polled;    /* [room + 2] */
-    int64_t accept_from_us;   /* no accept before: descriptors had run out */
+    homes *all;
+    home *own;
+    uint32_t count, room;
+    connection **seated;   /* [room], [count] in use: who has the slot after */
+    struct pollfd *polled; /* [room + 1] */
+    deadlines waits;
+    bool stops;           /* has seen that the homes are stopping */
+    int64_t look_from_us; /* no look at the sockets before */
 } loop;
 
-/* The loop takes the listener. Up to `greatest` connections. False: no memory; the listener is closed then. */
-bool loop_init(loop *l, service *shared, wake *bell, int listener, uint32_t greatest);
-/* Closes what is open. */
+/* False: no memory. */
+bool loop_init(loop *l, service *shared, homes *all, home *own);
+/* After loop_run. Accepts a zeroed one. */
 void loop_fini(loop *l);
 
-/* Serves until a signal asks to stop; then says BYE to everyone and returns when that is sent, or after
- * LIMIT_STOP_FLUSH_US. */
+/* Serves until homes_stop; then says BYE to everyone and returns when that is sent, or after LIMIT_STOP_FLUSH_US. No
+ * connection is left then. */
 void loop_run(loop *l);
 
 #endif

@@ -1,6 +1,6 @@
 /* making.h: how far forests have come that are being made, told to those who want to know (CREATE's `progress`).
  *
- * The worker only leaves a note; an I/O thread looks at the notes now and then while there is someone to tell. So
+ * The worker only leaves a note; the main thread looks at the notes now and then while there is someone to tell. So
  * neither waits for the other, and what a slow client is told is not queued. */
 #ifndef MAKING_H
 #define MAKING_H

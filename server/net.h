@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <sys/types.h>
 #include <sys/uio.h>
 
@@ -12,6 +13,9 @@ enum { NET_ADDRESS = 80 }; /* bytes of "[IPV6%scope]:PORT" */
 
 /* A non-blocking pipe: [0] to read, [1] to write. */
 bool net_pipe(int ends[2]);
+
+/* Raises the number of descriptors that the process may have as far as it can, and returns it; 0: nobody knows. */
+uint64_t net_raise_descriptors(void);
 
 /* Where to listen. */
 typedef struct net_place {

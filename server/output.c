@@ -115,21 +115,33 @@ static void gather(struct iovec *pieces, size_t *count, unsigned char *bytes, si
     *skip = 0;
 }
 
-/* A frame goes out alone, so that its own times are true. */
-static size_t gather_segments(output *out, struct iovec pieces[LIMIT_OUTPUT_GATHER], int64_t now_us)
+static void gather_frame(const output *out, struct iovec *pieces, size_t *count)
 {
-    size_t count = 0, skip = out->sent;
-    if (out->first->shown) {
-        if (out->first->size == 0) {
-            begin_frame(out, out->first, now_us);
-        }
-        gather(pieces, &count, out->first->bytes, out->first->size, &skip);
-        gather(pieces, &count, out->first->v->glb.bytes, out->first->v->glb.size, &skip);
+    size_t skip = out->sent;
+    gather(pieces, count, out->first->bytes, out->first->size, &skip);
+    gather(pieces, count, out->first->v->glb.bytes, out->first->v->glb.size, &skip);
+}
+
+static void gather_messages(const output *out, struct iovec *pieces, size_t *count)
+{
+    size_t skip = out->sent;
+    for (output_segment *s = out->first; s && !s->shown && *count < LIMIT_OUTPUT_GATHER; s = s->next) {
+        gather(pieces, count, s->bytes, s->size, &skip);
+    }
+}
+
+size_t output_gather(output *out, struct iovec pieces[LIMIT_OUTPUT_GATHER], int64_t now_us)
+{
+    size_t count = 0;
+    out->begun_us = out->sent == 0 ? now_us : out->begun_us;
+    if (!out->first->shown) {
+        gather_messages(out, pieces, &count);
         return count;
     }
-    for (output_segment *s = out->first; s && !s->shown && count < LIMIT_OUTPUT_GATHER; s = s->next) {
-        gather(pieces, &count, s->bytes, s->size, &skip);
+    if (out->first->size == 0) {
+        begin_frame(out, out->first, now_us);
     }
+    gather_frame(out, pieces, &count); /* alone, so that its own times are true */
     return count;
 }
 
@@ -143,7 +155,7 @@ static void count_frame(output *out, int64_t now_us)
     metrics_observe(METRIC_FRAME_AGE, clock_between_us(out->first->shown->stepped_us, now_us));
 }
 
-static void take_sent(output *out, size_t sent, int64_t now_us)
+void output_took(output *out, size_t sent, int64_t now_us)
 {
     out->bytes_sent += sent;
     out->sent += sent;
@@ -156,22 +168,4 @@ static void take_sent(output *out, size_t sent, int64_t now_us)
         remove_first(out);
         out->sent = rest;
     }
-}
-
-net_result output_write(output *out, int fd, size_t most, int64_t (*clock_us)(void))
-{
-    for (size_t written = 0; out->first && written < most;) {
-        struct iovec pieces[LIMIT_OUTPUT_GATHER];
-        int64_t now_us = clock_us();
-        size_t count = gather_segments(out, pieces, now_us);
-        out->begun_us = out->sent == 0 ? now_us : out->begun_us;
-        size_t sent = 0;
-        net_result result = net_send(fd, pieces, count, &sent);
-        if (result != NET_DONE) {
-            return result;
-        }
-        take_sent(out, sent, clock_us());
-        written += sent;
-    }
-    return NET_DONE;
 }

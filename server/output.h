@@ -29,8 +29,10 @@ bool output_add_message(output *out, const proto_message *message);
 /* A view of a picture; takes the reference. False: no memory. */
 bool output_add_picture(output *out, picture *shown, const view *v, const delivery *to);
 
-/* Sends until all is sent (NET_DONE), the socket takes no more (NET_LATER), `most` bytes went out (NET_DONE, and not
- * empty), or the connection is broken (NET_FAILED). */
-net_result output_write(output *out, int fd, size_t most, int64_t (*clock_us)(void));
+/* What goes to the socket next; the output is not empty. Number of pieces, which stay good, whatever is added, until
+ * output_took. One sender at a time. */
+size_t output_gather(output *out, struct iovec pieces[LIMIT_OUTPUT_GATHER], int64_t now_us);
+/* So many bytes of that went out. */
+void output_took(output *out, size_t sent, int64_t now_us);
 
 #endif

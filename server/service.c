@@ -1,6 +1,7 @@
 /* service.c: see service.h. */
 #include "service.h"
 #include "base/assert.h"
+#include "home.h"
 #include "limits.h"
 #include "metrics.h"
 #include "subscription.h"
@@ -47,6 +48,13 @@ void service_fini(service *s)
     *s = (service){0};
 }
 
+void service_ring_door(service *s)
+{
+    if (s->door) {
+        home_ring(s->door, s);
+    }
+}
+
 void service_lock(service *s)
 {
     int failed = pthread_mutex_lock(&s->lock);
@@ -55,6 +63,15 @@ void service_lock(service *s)
 
 void service_unlock(service *s)
 {
+    /* noted before the lock is let go: a home may be in the list anew right after */
+    wake *bells[LIMIT_IO_THREADS_GREATEST + 2];
+    unsigned count = 0;
+    for (; s->to_ring; s->to_ring = s->to_ring->next_rung) {
+        bells[count++] = &s->to_ring->bell;
+    }
     int failed = pthread_mutex_unlock(&s->lock);
     ASSERT(!failed);
+    while (count > 0) {
+        wake_ring(bells[--count]);
+    }
 }

@@ -17,7 +17,8 @@
 #include <pthread.h>
 
 typedef struct service_options {
-    unsigned workers; /* 0: jobs run where worker_pool_run_one is called */
+    unsigned io_threads; /* for STATS */
+    unsigned workers;    /* 0: jobs run where worker_pool_run_one is called */
     uint32_t max_forests, max_sessions;
     bool auth_required;
     uint8_t token[AUTH_TOKEN_SIZE];
@@ -36,13 +37,16 @@ typedef struct service_counters {
     uint64_t steps, step_us, encode_us;
     uint64_t deadlines_missed; /* jobs that ended later than they should */
     uint64_t dropped_us;       /* simulated time that free-running forests passed over */
-    uint32_t sessions;
+    uint32_t sessions, idle;   /* idle: of the sessions, those whose connections live in the cold home */
 } service_counters;
 
 typedef struct service {
     service_options options; /* never changed: read without the lock */
     pthread_mutex_t lock;    /* service_lock */
     bool has_lock;
+    struct home *to_ring;              /* homes whose bells ring when the lock is let go: see home.h */
+    struct home *door;                 /* whose loop tells how far forests have come; NULL: nobody's (in tests) */
+    struct home_link *replies_waiting; /* connections that a worker will send its answers to: see connection_send.h */
     worker_pool *pool;
     registry forests;
     handle_table sessions; /* of struct session */
@@ -60,7 +64,11 @@ bool service_init(service *s, const service_options *options);
 /* After the last session's end, without the lock. Waits for jobs that run. Accepts a zeroed one. */
 void service_fini(service *s);
 
-/* The lock over all of it; not recursive. One thread alone, as in tests without threads, may do without. */
+/* Something will be due (upkeep.h) earlier than it was. Under the lock. */
+void service_ring_door(service *s);
+
+/* The lock over all of it; not recursive. One thread alone, as in tests without threads, may do without. Letting it go
+ * rings the bells of loops that have something to do. */
 void service_lock(service *s);
 void service_unlock(service *s);
 

@@ -36,17 +36,25 @@ static void leave_holdings(session *s)
     if (s->state == SESSION_OPEN && options->resume_grace_us > 0 && !holdings_are_none(&s->holds)) {
         parking_leave(&s->shared->parked, s->token, &s->holds, &s->shared->forests, now_us,
                       now_us + options->resume_grace_us);
+        service_ring_door(s->shared);
     }
     holdings_fini(&s->holds, &s->shared->forests, now_us);
 }
 
+static uint32_t subscription_places(const session *s)
+{
+    return s->subscriptions ? LIMIT_SESSION_SUBSCRIPTIONS : 0;
+}
+
 void session_end_subscriptions(session *s)
 {
-    for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
+    for (uint32_t i = 0; i < subscription_places(s); i++) {
         if (s->subscriptions[i].handle) {
             subscription_end(&s->subscriptions[i]);
         }
     }
+    free(s->subscriptions);
+    s->subscriptions = NULL;
 }
 
 void session_fini(session *s)
@@ -120,6 +128,13 @@ void session_bye(session *s, const char *reason)
     s->state = SESSION_CLOSING;
 }
 
+void session_prompt(session *s)
+{
+    if (s->sink.prompt) {
+        s->sink.prompt(s->sink.context);
+    }
+}
+
 void session_picture(session *s, picture *shown, const view *v, uint64_t request)
 {
     if (s->state != SESSION_CLOSING) {
@@ -147,7 +162,7 @@ bool session_attach(session *s, uint16_t about, uint64_t request, resident *r, b
 void session_detach(session *s, uint64_t forest)
 {
     holdings_close(&s->holds, &s->shared->forests, forest, s->shared->options.clock_us());
-    for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
+    for (uint32_t i = 0; i < subscription_places(s); i++) {
         subscription *sub = &s->subscriptions[i];
         if (sub->handle && sub->forest->handle == forest) {
             subscription_end(sub);
@@ -206,9 +221,22 @@ bool session_push(session *s, const proto_message *message, resident *r, forest_
 
 /* ---- subscriptions ---------------------------------------------------------------------------------------------- */
 
+subscription *session_subscription_place(session *s)
+{
+    if (!s->subscriptions) {
+        s->subscriptions = calloc(LIMIT_SESSION_SUBSCRIPTIONS, sizeof *s->subscriptions);
+    }
+    for (uint32_t i = 0; i < subscription_places(s); i++) {
+        if (s->subscriptions[i].handle == 0) {
+            return &s->subscriptions[i];
+        }
+    }
+    return NULL;
+}
+
 subscription *session_subscription(session *s, uint64_t handle)
 {
-    for (uint32_t i = 0; handle && i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
+    for (uint32_t i = 0; handle && i < subscription_places(s); i++) {
         if (s->subscriptions[i].handle == handle) {
             return &s->subscriptions[i];
         }
@@ -219,7 +247,7 @@ subscription *session_subscription(session *s, uint64_t handle)
 /* The next in turn that may send, with its view, so that no forest starves another on the same connection. */
 static subscription *next_due(session *s, int64_t now_us, const view **v)
 {
-    for (uint32_t n = 0; n < LIMIT_SESSION_SUBSCRIPTIONS; n++) {
+    for (uint32_t n = 0; n < subscription_places(s); n++) {
         uint32_t i = (s->subscription_next + n) % LIMIT_SESSION_SUBSCRIPTIONS;
         subscription *sub = &s->subscriptions[i];
         if (!subscription_is_due(sub, now_us)) {
@@ -237,9 +265,8 @@ static subscription *next_due(session *s, int64_t now_us, const view **v)
     return NULL;
 }
 
-void session_stream(session *s)
+static void stream(session *s, int64_t now_us)
 {
-    int64_t now_us = s->shared->options.clock_us();
     while (s->state == SESSION_OPEN && s->sink.drained(s->sink.context)) {
         const view *v = NULL;
         subscription *sub = next_due(s, now_us, &v);
@@ -252,12 +279,23 @@ void session_stream(session *s)
     }
 }
 
+void session_stream(session *s)
+{
+    if (!s->subscriptions) {
+        return;
+    }
+    stream(s, s->shared->options.clock_us());
+    if (s->sink.touched) {
+        s->sink.touched(s->sink.context);
+    }
+}
+
 /* ---- the clock --------------------------------------------------------------------------------------------------- */
 
 static int64_t stream_due_us(const session *s)
 {
     int64_t due_us = INT64_MAX;
-    for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
+    for (uint32_t i = 0; i < subscription_places(s); i++) {
         const subscription *sub = &s->subscriptions[i];
         if (sub->handle && sub->waiting && sub->credit > 0 && sub->due_us < due_us && subscription_view(sub)) {
             due_us = sub->due_us;

@@ -20,6 +20,10 @@ typedef struct session_sink {
     void (*picture)(void *context, picture *shown, const view *v, const delivery *to);
     /* True if all that was given before is gone. */
     bool (*drained)(void *context);
+    /* What comes next answers a request from a thread that may send it itself. NULL: that changes nothing. */
+    void (*prompt)(void *context);
+    /* What session_stream_due says may have changed. NULL: nobody wants to know. */
+    void (*touched)(void *context);
 } session_sink;
 
 typedef enum session_state {
@@ -45,8 +49,8 @@ typedef struct session {
 
     holdings holds;
     uint64_t subscription_serial;
-    uint32_t subscription_next; /* whose turn it is */
-    subscription subscriptions[LIMIT_SESSION_SUBSCRIPTIONS];
+    uint32_t subscription_next;  /* whose turn it is */
+    subscription *subscriptions; /* [LIMIT_SESSION_SUBSCRIPTIONS], heap; NULL: there was none yet */
 } session;
 
 /* False: as many sessions as the service takes. `peer` is for the log. */
@@ -77,6 +81,9 @@ void session_error_awt(session *s, uint16_t about, uint64_t request, const awt_e
 /* Sends BYE and closes. */
 void session_bye(session *s, const char *reason);
 
+/* The answer comes now, from a worker that may send it itself: before what it says. */
+void session_prompt(session *s);
+
 /* Sends a view of a picture as the answer of `request`; holds its own reference. */
 void session_picture(session *s, picture *shown, const view *v, uint64_t request);
 
@@ -100,6 +107,8 @@ bool session_push(session *s, const proto_message *message, resident *r, forest_
 
 /* ---- subscriptions ---------------------------------------------------------------------------------------------- */
 
+/* A free place for one. NULL: LIMIT_SESSION_SUBSCRIPTIONS are taken, or no memory. */
+subscription *session_subscription_place(session *s);
 void session_end_subscriptions(session *s);
 /* NULL: none of that handle. */
 subscription *session_subscription(session *s, uint64_t handle);

@@ -34,6 +34,9 @@ void session_create(session *s, const proto_message *message)
         return;
     }
     s->pending++;
+    if (create->progress) {
+        service_ring_door(s->shared);
+    }
 }
 
 void session_attach_forest(session *s, const proto_message *message)

@@ -136,10 +136,7 @@ void session_subscribe(session *s, const proto_message *message)
                       (unsigned)subscribe->deltas);
         return;
     }
-    subscription *place = NULL;
-    for (uint32_t i = 0; i < LIMIT_SESSION_SUBSCRIPTIONS && !place; i++) {
-        place = s->subscriptions[i].handle == 0 ? &s->subscriptions[i] : NULL;
-    }
+    subscription *place = session_subscription_place(s);
     if (!place) {
         session_error(s, message->type, message->request, PROTO_ERROR_LIMIT,
                       "a connection has %d subscriptions at most", LIMIT_SESSION_SUBSCRIPTIONS);

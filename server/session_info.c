@@ -57,6 +57,8 @@ void session_stats(session *s, const proto_message *message)
         .encode_us = counters->encode_us,
         .memory = registry_bytes(&shared->forests),
         .last_write_us = s->last_write_us,
+        .io_threads = shared->options.io_threads,
+        .idle_connections = counters->idle,
     };
     session_send(s, &reply);
 }

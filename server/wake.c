@@ -16,6 +16,12 @@ bool wake_init(wake *w)
     return net_pipe(w->ends);
 }
 
+void wake_fini(wake *w)
+{
+    close(w->ends[0]);
+    close(w->ends[1]);
+}
+
 void wake_ring(void *context)
 {
     const wake *w = context;
@@ -29,7 +35,8 @@ void wake_ring(void *context)
 void wake_clear(wake *w)
 {
     char rung[256];
-    while (read(w->ends[0], rung, sizeof rung) > 0) {
+    if (read(w->ends[0], rung, sizeof rung) < 0) {
+        /* nothing was there; more than fits ends the next sleep too, which does no harm */
     }
 }
 

@@ -1,5 +1,5 @@
-/* wake.h: the pipe that ends poll's sleep: rung by workers when a job is done and by signals that ask the daemon to
- * stop. */
+/* wake.h: the pipe that ends poll's sleep: rung by whoever has something for the sleeper to do, and by signals that ask
+ * the daemon to stop. */
 #ifndef WAKE_H
 #define WAKE_H
 
@@ -9,8 +9,10 @@ typedef struct wake {
     int ends[2]; /* [0] is polled */
 } wake;
 
-/* False: no descriptors left. The pipe stays until the process ends, for the signals that may still come. */
+/* False: no descriptors left. */
 bool wake_init(wake *w);
+/* Not for one that signals ring: they may come until the process ends. */
+void wake_fini(wake *w);
 
 /* Ends the present or the next sleep. Any thread, and signal handlers. `context` is a wake. */
 void wake_ring(void *context);

@@ -4,9 +4,9 @@
  * they are called, so that a job that becomes due wakes one thread and not all of them. */
 #include "worker.h"
 #include "base/assert.h"
+#include "threads.h"
 
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -146,21 +146,16 @@ static unsigned builders_for(unsigned workers)
     return (workers + 1) / 2;
 }
 
-/* Signals belong to the main thread: threads inherit the mask that stands while they are made. */
 static bool start_threads(worker_pool *pool)
 {
     const unsigned count = pool->def.workers + builders_for(pool->def.workers);
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
     bool started = true;
     while (started && pool->started < count) {
         worker *w = &pool->threads[pool->started];
         *w = (worker){.pool = pool, .number = pool->started + 1};
-        started = pthread_create(&w->thread, NULL, w->number > pool->def.workers ? builder_main : worker_main, w) == 0;
+        started = threads_start(&w->thread, w->number > pool->def.workers ? builder_main : worker_main, w);
         pool->started += started;
     }
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
     return started;
 }
 

@@ -148,7 +148,7 @@ bool actor_is_refused(const actor *who)
 void actor_connect(actor *who, stage *on)
 {
     *who = (actor){.on = on, .wire = malloc(ACTOR_WIRE)};
-    session_sink sink = {who, sink_message, sink_picture, sink_drained};
+    session_sink sink = {.context = who, .message = sink_message, .picture = sink_picture, .drained = sink_drained};
     ASSERT(who->wire);
     who->there = session_init(&who->talk, on->shared, &sink, "actor");
     if (!who->there) {

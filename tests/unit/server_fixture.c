@@ -76,7 +76,7 @@ static bool sink_drained(void *context)
 fake_client *fake_client_create(service *shared)
 {
     fake_client *client = calloc(1, sizeof *client);
-    session_sink sink = {client, sink_message, sink_picture, sink_drained};
+    session_sink sink = {.context = client, .message = sink_message, .picture = sink_picture, .drained = sink_drained};
     CHECK(client && session_init(&client->talk, shared, &sink, "test"));
     return client;
 }

@@ -32,6 +32,7 @@ TEST(server_options_have_their_defaults)
     CHECK_TEXT(c.host, "127.0.0.1");
     CHECK_TEXT(c.port, "4680");
     CHECK(c.workers >= 1);
+    CHECK(c.io_threads >= 1 && c.io_threads <= LIMIT_IO_THREADS_PER_CORE * c.workers);
     CHECK_INT(c.max_forests, LIMIT_FORESTS);
     CHECK_INT(c.max_connections, LIMIT_CONNECTIONS);
     CHECK_INT(c.level, LOG_INFO);
@@ -48,8 +49,9 @@ TEST(server_options_are_checked)
     CHECK(c.no_auth);
     CHECK_INT(c.workers, 3);
     static const char *const wrong[] = {"--listen=nowhere",     "--listen=::1:80",  "--workers=0",
-                                        "--workers=257",        "--max-forests=0",  "--max-connections=5000",
-                                        "--log-level=shouting", "--max-forests=1x", "--state-dir"};
+                                        "--workers=257",        "--max-forests=0",  "--max-connections=65537",
+                                        "--log-level=shouting", "--max-forests=1x", "--state-dir",
+                                        "--io-threads=0",       "--io-threads=257"};
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         error[0] = '\0';
         CHECK_INT(read_config(&c, error, sizeof error, wrong[i], NULL, NULL), OPTIONS_WRONG);

@@ -97,7 +97,8 @@ static void link_init(viewers *v, viewers_link *l, const struct proto_create_rep
     l->client = fake_client_open(&v->shared);
     CHECK(fake_send(l->client, &attach));
     fake_expect(l->client, PROTO_ATTACH_REPLY);
-    l->client->talk.sink = (session_sink){l, link_message, link_picture, link_drained};
+    l->client->talk.sink =
+        (session_sink){.context = l, .message = link_message, .picture = link_picture, .drained = link_drained};
 }
 
 void viewers_init(viewers *v, uint32_t count, const struct proto_subscribe *asked)
