@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "clock.h"
 #include "forest_state.h"
+#include "groom_make.h"
 #include "metrics.h"
 
 #include <stddef.h>
@@ -31,42 +32,6 @@ forest_stage forest_work_stage(forest_work *w, float *share)
     return (forest_stage)(note >> 16);
 }
 
-/* Strands in the head frame, from the style or the file. */
-static awt_status make_strands(recipe *r, awt_strands *strands, awt_error *error)
-{
-    if (r->style) {
-        return awt_style_grow(r->style, r->strands, r->seed, strands, error);
-    }
-    awt_status status = awt_strands_read(r->file->bytes, (size_t)r->file->total, strands, error);
-    if (status == AWT_OK) {
-        status = awt_strands_place(strands, &r->placement, error);
-        r->groom.head_radius_m = r->placement.head_radius_m;
-    }
-    return status;
-}
-
-static awt_status make_groom(forest_work *w, const awt_strands *strands, awt_error *error)
-{
-    int64_t begun_us = clock_monotonic_us();
-    const upload *file = w->making->hierarchy;
-    awt_groom_def def = w->making->groom;
-    awt_hierarchy hierarchy = {0};
-    awt_status status = AWT_OK;
-    if (file) {
-        status = awt_hierarchy_read(file->bytes, (size_t)file->total, &hierarchy, error);
-        def.hierarchy = &hierarchy;
-    }
-    if (status == AWT_OK) {
-        status = awt_groom_build(strands, &def, note_wisps, w, &w->groom, error);
-    }
-    awt_hierarchy_fini(&hierarchy);
-    w->build_us = clock_between_us(begun_us, clock_monotonic_us());
-    metrics_observe(METRIC_BUILD, w->build_us);
-    w->skipped_strands = strands->skipped_count;
-    w->rebuilt = status == AWT_OK ? awt_groom_rebuilt(w->groom) : (awt_rebuilt){0};
-    return status;
-}
-
 static awt_status make_forest(forest_work *w, awt_error *error)
 {
     recipe *r = w->making;
@@ -89,16 +54,17 @@ static awt_status make_forest(forest_work *w, awt_error *error)
 /* The groom; of a snapshot the forest, too. */
 static awt_status make_wisps(forest_work *w, awt_error *error)
 {
-    awt_strands strands = {0};
     if (w->making->state) {
         return forest_state_restore(w, error);
     }
-    awt_status status = make_strands(w->making, &strands, error);
-    if (status == AWT_OK) {
-        status = make_groom(w, &strands, error);
+    w->shared = groom_make(w->grooms, w->making, note_wisps, w, &w->build_us, error);
+    if (!w->shared) {
+        return error->status;
     }
-    awt_strands_fini(&strands);
-    return status;
+    w->groom = w->shared->groom;
+    w->skipped_strands = w->shared->skipped_strands;
+    w->rebuilt = w->shared->rebuilt;
+    return AWT_OK;
 }
 
 static awt_status make_hair(forest_work *w, awt_error *error)
@@ -301,11 +267,16 @@ void forest_work_fini(forest_work *w)
     picture_release(w->state);
     drawing_destroy(w->draws);
     awt_forest_destroy(w->forest);
-    awt_groom_destroy(w->groom);
+    if (w->shared) {
+        groom_cache_release(w->grooms, w->shared);
+    } else {
+        awt_groom_destroy(w->groom);
+    }
     *w = (forest_work){0};
 }
 
 uint64_t forest_work_bytes(const forest_work *w)
 {
-    return w->info.bytes + (w->forest ? awt_forest_bytes(w->forest) : 0) + (w->draws ? drawing_bytes(w->draws) : 0);
+    return (w->shared ? 0 : w->info.bytes) + (w->forest ? awt_forest_bytes(w->forest) : 0) +
+           (w->draws ? drawing_bytes(w->draws) : 0);
 }

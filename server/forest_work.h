@@ -8,6 +8,7 @@
 #define FOREST_WORK_H
 
 #include "free_run.h"
+#include "groom_cache.h"
 #include "keeper.h"
 #include "saved.h"
 #include "wishes.h"
@@ -23,6 +24,7 @@ typedef struct forest_work {
     atomic_uint note; /* while it is made: how far it has come, see forest_work_stage; written by the worker */
 
     /* the task; filled in before submitting */
+    groom_cache *grooms;  /* never NULL: where the groom is from, and goes */
     recipe *making;       /* CREATE; NULL: the forest is made */
     forest_input *inputs; /* motions and parameters, and at the end the query that wants them; owned. NULL: no step */
     forest_input *looks;  /* who wants to see what there is then; owned */
@@ -52,6 +54,7 @@ typedef struct forest_work {
     int64_t state_us;   /* the forest's time then: with `runs` up to a step after what is shown */
 
     /* the hair, NULL until made */
+    const made_groom *shared; /* what `groom` is of; NULL: a groom of its own, from a snapshot */
     awt_groom *groom;
     awt_forest *forest;
     awt_groom_info info;
@@ -70,7 +73,7 @@ forest_stage forest_work_stage(forest_work *work, float *share);
 /* Frees task, result and hair; accepts a zeroed one. Not while a worker has it. */
 void forest_work_fini(forest_work *work);
 
-/* Bytes that the hair holds. */
+/* Bytes that the hair holds, without a groom that others may share. */
 uint64_t forest_work_bytes(const forest_work *work);
 
 #endif

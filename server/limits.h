@@ -65,11 +65,12 @@ enum {
 };
 
 /* Bytes. */
-#define LIMIT_UPLOAD_BYTES (UINT64_C(256) << 20)  /* one file */
-#define LIMIT_UPLOADS_BYTES (UINT64_C(512) << 20) /* all uploads of all connections */
-#define LIMIT_SAVED_BYTES (UINT64_C(1) << 30)     /* one forest's file in the state directory */
-#define LIMIT_KEEPER_BYTES (UINT64_C(512) << 20)  /* that wait to be written there */
-#define LIMIT_HAIR_BYTES (UINT64_C(4) << 30)      /* forests and grooms; beyond, CREATE is refused */
+#define LIMIT_UPLOAD_BYTES (UINT64_C(256) << 20)       /* one file */
+#define LIMIT_UPLOADS_BYTES (UINT64_C(512) << 20)      /* all uploads of all connections */
+#define LIMIT_SAVED_BYTES (UINT64_C(1) << 30)          /* one forest's file in the state directory */
+#define LIMIT_KEEPER_BYTES (UINT64_C(512) << 20)       /* that wait to be written there */
+#define LIMIT_GROOMS_SPARE_BYTES (UINT64_C(128) << 20) /* grooms that no forest stands on any more */
+#define LIMIT_HAIR_BYTES (UINT64_C(4) << 30)           /* forests and grooms; beyond, CREATE is refused */
 
 /* Times, microseconds. */
 #define LIMIT_HANDSHAKE_US INT64_C(10000000)   /* from accept until the client is in */

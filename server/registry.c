@@ -18,7 +18,8 @@ bool registry_init(registry *reg, const registry_def *def)
                       .clock_us = def->clock_us,
                       .wish = def->wish,
                       .interval_us = def->interval_us};
-    return handle_table_init(&reg->handles, def->greatest);
+    reg->grooms = groom_cache_create(LIMIT_GROOMS_SPARE_BYTES);
+    return reg->grooms && handle_table_init(&reg->handles, def->greatest);
 }
 
 static void resident_free(registry *reg, resident *r)
@@ -47,6 +48,7 @@ void registry_fini(registry *reg)
     while (reg->first) {
         resident_free(reg, reg->first);
     }
+    groom_cache_destroy(reg->grooms);
     handle_table_fini(&reg->handles);
     *reg = (registry){0};
 }
@@ -88,6 +90,7 @@ static void make(registry *reg, resident *r, recipe *making, int64_t now_us)
     r->params = making->params;
     r->motion_us = making->start.time_us;
     atomic_init(&r->work.note, 0);
+    r->work.grooms = reg->grooms;
     r->work.making = making;
     r->work.submitted_us = now_us;
     turns_submit(reg, r);
@@ -212,7 +215,7 @@ void registry_continue(registry *reg, resident *r)
 
 uint64_t registry_bytes(const registry *reg)
 {
-    uint64_t bytes = 0;
+    uint64_t bytes = groom_cache_bytes(reg->grooms);
     for (const resident *r = reg->first; r; r = r->next) {
         bytes += r->bytes;
     }

@@ -92,7 +92,8 @@ typedef struct registry {
     uint32_t greatest;
     uint32_t telling;   /* residents that tell */
     uint32_t restoring; /* restored residents that are not ready yet */
-    keeper *keeper;     /* NULL: nothing is brought to the disk */
+    groom_cache *grooms;
+    keeper *keeper; /* NULL: nothing is brought to the disk */
     worker_pool *pool;
     int64_t (*clock_us)(void);
     registry_wish *wish;
