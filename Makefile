@@ -48,7 +48,7 @@ LIBCLIENT := $(B)/libawtclient.a
 LIBSERVER := $(B)/libawtserver.a
 PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-load $(B)/awt-bench
 
-.PHONY: all help demo web viewer test soak sheets bench bench-service format lint install clean deps deps-test deps-viewer deps-soak programs tests-binary
+.PHONY: all help demo web viewer test soak sheets pictures bench bench-service format lint install clean deps deps-test deps-viewer deps-soak programs tests-binary
 .DELETE_ON_ERROR:
 
 all: programs $(B)/rooms.ok
@@ -67,6 +67,7 @@ help:
 	@echo 'make test      installs what is missing, builds, runs every test (DEPS=never: installs nothing)'
 	@echo 'make soak      the long tests (about half an hour on two cores): minutes of violent motion, TSan, same bits, fuzzing'
 	@echo 'make sheets    the pictures of README.md: every style (and real groom that is there) through the lean'
+	@echo 'make pictures  the pictures of the viewer in README.md, drawn in Chromium'
 	@echo 'make all       builds; config=debug|release|asan|tsan|coverage|fuzz, native=1, CC=clang CXX=clang++, V=1'
 	@echo 'make bench-service  loads awtd and a bare poll() server in turns, and compares them with the aims (about ten minutes)'
 	@echo 'make bench format lint install clean'
@@ -183,6 +184,10 @@ soak: deps-soak
 sheets: deps-test
 	@$(MAKE) --no-print-directory programs config=release
 	@sh tests/render/sheets.sh build/release
+
+pictures: deps-test
+	@$(MAKE) --no-print-directory programs web config=release
+	@node tests/web/pictures.mjs build/release
 
 bench: programs
 	$(B)/awt-bench

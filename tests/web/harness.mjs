@@ -7,7 +7,7 @@ import { fileURLToPath } from 'node:url';
 
 export const top = fileURLToPath(new URL('../..', import.meta.url));
 export const build = process.argv[2] ?? 'build/release';
-const WAIT_MS = 20000;
+const WAIT_MS = 60000;
 const counts = { passed: 0, failed: 0, skipped: 0 };
 const running = new Set();
 let what = '', sound = true;

@@ -1,12 +1,15 @@
 // test_viewer.mjs BUILD [NAME]: the viewer in a real browser: counts and pixels, never frame rates.
+import { readFileSync } from 'node:fs';
+import { createServer as createHttpServer } from 'node:http';
 import { createServer } from 'node:net';
+import { join } from 'node:path';
 import { countDifferent, countPixels, openBrowser, View } from './browser.mjs';
-import { check, equal, finish, skip, startAwtd, startGateway, test, until } from './harness.mjs';
+import { check, equal, finish, skip, startAwtd, startGateway, test, top, until } from './harness.mjs';
 import { codec } from './socket.mjs';
 
 const STRANDS = 600, { browser, why } = await openBrowser();
 if (!browser) {
-  skip(14, why);
+  skip(16, why);
   await finish();
 }
 let awtd = await startAwtd();
@@ -143,6 +146,15 @@ await test('viewer_survives_a_restart_of_awtd', async () => {
   await view.steps(2);
 });
 
+await test('viewer_that_finds_only_ended_hair_makes_its_own', async () => {
+  const before = await view.knows();
+  await view.page.evaluate(() => viewer.hair.destroy());
+  await view.page.close();
+  const next = await View.open(browser, gateway.drive);
+  await next.untilIt((known) => known.state === 'live' && known.driving && known.forest !== before.forest, 'hair of its own');
+  await next.page.close();
+});
+
 await test('viewer_without_the_token_says_so', async () => {
   const stranger = await View.open(browser, `${gateway.origin}/#token=${'0'.repeat(32)}`);
   await stranger.untilIt(({ state }) => state === 'lost', 'that it is refused');
@@ -150,16 +162,30 @@ await test('viewer_without_the_token_says_so', async () => {
   await stranger.page.close();
 });
 
+/** Pages of somebody else's server, on another port: path -> text. What it does not have it takes from the gateway that `behind` names. */
+async function serveElsewhere(pages, behind = () => null) {
+  const server = createHttpServer(async (request, response) => {
+    const page = pages[request.url], from = page === undefined && behind() ? await fetch(`http://127.0.0.1:${behind().port}${request.url}`) : null;
+    response.setHeader('Content-Type', from?.headers.get('content-type') ?? (request.url.endsWith('js') ? 'text/javascript' : 'text/html'));
+    response.end(from ? Buffer.from(await from.arrayBuffer()) : page ?? '');
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  return { origin: `http://127.0.0.1:${server.address().port}`, close: () => server.close() };
+}
+
 await test('viewer_of_another_origin_is_refused', async () => {
-  const page = await browser.newPage();
-  await page.goto('about:blank');
-  const opened = await page.evaluate(({ port, token }) => new Promise((resolve) => {
+  const elsewhere = await serveElsewhere({ '/': '<title>elsewhere</title>' }), page = await browser.newPage(), open = ({ port, token }) => new Promise((resolve) => {
     const socket = new WebSocket(`ws://127.0.0.1:${port}/awt`, ['awt.1', `awt.token.${token}`]);
     socket.onopen = () => resolve(true);
     socket.onerror = () => resolve(false);
-  }), { port: gateway.port, token: gateway.tokens.drive });
-  equal(opened, false, 'it got in');
+  });
+  const friendly = await startGateway(awtd.port, '--origin', elsewhere.origin);
+  await page.goto(elsewhere.origin);
+  equal(await page.evaluate(open, { port: gateway.port, token: gateway.tokens.drive }), false, 'it got in');
+  equal(await page.evaluate(open, { port: friendly.port, token: friendly.tokens.drive }), true, 'it got in where its origin is listed');
   await page.close();
+  await friendly.stop();
+  elsewhere.close();
 });
 
 await test('viewer_says_that_a_server_lies', async () => {
@@ -175,6 +201,27 @@ await test('viewer_says_that_a_server_lies', async () => {
   await lied.untilIt(({ state, reason }) => state === 'lost' && reason.includes('does not make sense'), 'that it makes no sense');
   await lied.page.close();
   liar.close();
+});
+
+await test('viewer_example_of_the_readme_runs', async () => {
+  const pages = {}, elsewhere = await serveElsewhere(pages, () => listed), listed = await startGateway(awtd.port, '--origin', elsewhere.origin);
+  const [, code] = /\n((?: {4}.*\n)*? {4}.*AwtHair[^]*?\n)\n/.exec(readFileSync(join(top, 'README.md'), 'utf8')), page = await browser.newPage();
+  const own = code.replace("'three'", "'/three/three.module.min.js'").replace('127.0.0.1:8080', `127.0.0.1:${listed.port}`)
+    .replace("style: 'long'", "style: 'long', strands: 300"); /* drawn in software here */
+  const before = `import * as THREE from '/three/three.module.min.js';
+    const renderer = new THREE.WebGLRenderer(), scene = new THREE.Scene(), camera = new THREE.PerspectiveCamera(40, 1, 0.1, 10);
+    camera.position.set(0, 1.6, 1.2);
+    Object.assign(globalThis, { renderer, scene, camera, token: '${listed.tokens.drive}' });`;
+  Object.assign(pages, { '/example.html': '<script type="module" src="/before.js"></script><script type="module" src="/example.js"></script>',
+    '/before.js': before, '/example.js': `${own}\nglobalThis.hair = hair;` });
+  const heard = [];
+  page.on('console', (message) => heard.push(message.text()));
+  page.on('pageerror', (error) => heard.push(error.message));
+  await page.goto(`${elsewhere.origin}/example.html`);
+  await until(() => page.evaluate(() => globalThis.hair?.stats.frames > 3 && hair.stats.strands > 0 && Math.abs(hair.object.quaternion.y) > 0.01), () => `hair that turns: ${heard.join('; ')}`);
+  await page.close();
+  await listed.stop();
+  elsewhere.close();
 });
 
 /** A cyHair file: strands on a ball of 10 cm, each hanging from its root. */

@@ -14,7 +14,8 @@ import { COLOURS, readAddress, takeSettings } from './settings.js';
 import { Stage } from './stage.js';
 
 const address = readAddress(location.hash);
-let settings = address.settings, file = null, made = null; /* strands of one's own: { name, bytes }; the forest made last */
+let settings = address.settings, file = null; /* strands of one's own: { name, bytes } */
+let made = null, making = false;              /* the forest made last; another is on its way */
 document.body.classList.toggle('bare', address.bare);
 
 const kindOf = (level) => ({ kind: level.split(' ')[0], level: level.split(' ')[1] ?? 'full' });
@@ -66,14 +67,18 @@ hair.addEventListener('state', ({ detail }) => {
   if (detail.state === 'lost' || detail.state === 'empty') {
     driver.stop();
   }
+  if (detail.state === 'empty' && toldOnce && !making && !hair.wanted && !hair.shown?.driven) { /* what was shown is gone */
+    makeFirst();
+  }
   stand();
 });
 
 /* ---- who drives */
 
-let toldOnce = false;
+let toldOnce = false, mayMake = false; /* once a connection: what cannot be made is not tried again and again */
 hair.addEventListener('open', async () => {
   toldOnce = false;
+  mayMake = true;
   panel.list(await hair.listStyles().catch(() => ({ styles: [], params: [] })));
   panel.put(settings);
 });
@@ -81,8 +86,8 @@ hair.addEventListener('open', async () => {
 hair.addEventListener('shown', ({ detail: shown }) => {
   const first = !toldOnce;
   toldOnce = true;
-  if (first && !shown && hair.scope === 'drive' && !hair.wanted) {
-    makeHair();
+  if (first && !shown && !hair.wanted) {
+    makeFirst();
   } else if (!first && shown?.driven && driver.driving) { /* another page has taken the wheel */
     driver.stop();
     made = null;
@@ -115,7 +120,23 @@ function takeWheel() {
   stand();
 }
 
+function makeFirst() {
+  if (mayMake && hair.scope === 'drive') {
+    mayMake = false;
+    makeHair();
+  }
+}
+
 async function makeHair() {
+  making = true;
+  try {
+    await destroyAndMake();
+  } finally {
+    making = false;
+  }
+}
+
+async function destroyAndMake() {
   const before = hair.forest?.mayDrive ? hair.forest.handle : null;
   driver.stop();
   const { head, body } = driver.poseAfter(0);
@@ -127,7 +148,7 @@ async function makeHair() {
     failed(file ? `${file.name}: ${error.message}` : error.message);
     if (file && hair.connection.isIn) {
       file = null;
-      await makeHair();
+      await destroyAndMake();
     }
   }
 }
