@@ -27,7 +27,7 @@ export class View {
     view.errors = [];
     view.page.on('pageerror', (error) => view.errors.push(error.message));
     view.page.on('console', (message) => message.type() === 'error' && view.errors.push(message.text()));
-    await view.page.goto(address + more);
+    await view.page.goto(address + more, { timeout: 60000 });
     return view;
   }
 

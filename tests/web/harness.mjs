@@ -10,6 +10,7 @@ export const build = process.argv[2] ?? 'build/release';
 const WAIT_MS = 60000;
 const counts = { passed: 0, failed: 0, skipped: 0 };
 const running = new Set();
+process.on('exit', () => running.forEach(({ child }) => child.kill())); /* whatever ends the tests */
 let what = '', sound = true;
 
 export function check(value, text) {
