@@ -14,8 +14,8 @@
 typedef struct given {
     const char *listen, *admin, *state_directory, *token_file, *level, *format, *file;
     long long workers, io_threads, max_forests, max_connections;
-    long long resume_grace_s, forest_grace_s, quiet_s;
-    bool no_auth, admin_open, check, print;
+    long long resume_grace_s, forest_grace_s, quiet_s, save_interval_s, drain_s;
+    bool no_auth, no_save, admin_open, check, print;
 } given;
 
 static long long processors(void)
@@ -38,26 +38,42 @@ static long long io_threads(void)
 /* How many of the options, at the end of the table, only the command line takes. */
 enum { COMMAND_LINE_ALONE = 3 };
 
-/* Directory and file of the token, where the daemon wants one. */
+static bool copy_path(const char *name, const char *path, char out[LIMIT_PATH], char *error, size_t error_size)
+{
+    if (strlen(path) >= LIMIT_PATH) {
+        snprintf(error, error_size, "--%s: the path is longer than %d bytes", name, LIMIT_PATH - 1);
+        return false;
+    }
+    memcpy(out, path, strlen(path) + 1);
+    return true;
+}
+
+/* The state directory, where one was named or the token needs one. */
+static bool take_state_directory(const given *g, config *out, char *error, size_t error_size)
+{
+    if (g->state_directory) {
+        return copy_path("state-dir", g->state_directory, out->state_directory, error, error_size);
+    }
+    if (out->no_auth || g->token_file || auth_state_directory(out->state_directory, sizeof out->state_directory)) {
+        return true;
+    }
+    snprintf(error, error_size, "no place for the token: give --state-dir DIR, shorter than %d bytes", LIMIT_PATH);
+    return false;
+}
+
+/* State directory and token file, where the daemon wants them. */
 static bool take_paths(const given *g, config *out, char *error, size_t error_size)
 {
+    if (!take_state_directory(g, out, error, error_size)) {
+        return false;
+    }
+    out->saves = !g->no_save && out->state_directory[0] != '\0';
     if (out->no_auth) {
         return true;
     }
     if (g->token_file) {
         out->own_token_file = true;
-        if (strlen(g->token_file) >= sizeof out->token_file) {
-            snprintf(error, error_size, "--token-file: the path is longer than %d bytes", LIMIT_PATH - 1);
-            return false;
-        }
-        memcpy(out->token_file, g->token_file, strlen(g->token_file) + 1);
-        return true;
-    }
-    if (g->state_directory && strlen(g->state_directory) < sizeof out->state_directory) {
-        memcpy(out->state_directory, g->state_directory, strlen(g->state_directory) + 1);
-    } else if (g->state_directory || !auth_state_directory(out->state_directory, sizeof out->state_directory)) {
-        snprintf(error, error_size, "no place for the token: give --state-dir DIR, shorter than %d bytes", LIMIT_PATH);
-        return false;
+        return copy_path("token-file", g->token_file, out->token_file, error, error_size);
     }
     if (!auth_token_path(out->state_directory, out->token_file, sizeof out->token_file)) {
         snprintf(error, error_size, "the state directory's path is too long");
@@ -106,6 +122,8 @@ static option_result take(given *g, const option_program *program, config *out, 
     out->resume_grace_us = g->resume_grace_s * 1000000;
     out->forest_grace_us = g->forest_grace_s * 1000000;
     out->quiet_us = g->quiet_s * 1000000;
+    out->save_us = g->save_interval_s * 1000000;
+    out->drain_us = g->drain_s * 1000000;
     out->admin_open = g->admin_open;
     out->check = g->check;
     if (!take_addresses(g, out, error, error_size) || !take_log(g, out, error, error_size) ||
@@ -166,6 +184,11 @@ static option_result read_options(int count, char *const *arguments, given *g, c
          "seconds that a forest lives on when nobody has it open; 0: for ever"},
         {"quiet-timeout", OPTION_INTEGER, "S", &g->quiet_s, 0, LIMIT_GRACE_S_GREATEST,
          "seconds after which a silent client is let go; 0: never"},
+        {"save-interval", OPTION_INTEGER, "S", &g->save_interval_s, 0, LIMIT_GRACE_S_GREATEST,
+         "seconds from one round of bringing changed forests to DIR to the next; 0: only when the daemon stops"},
+        {"no-save", OPTION_FLAG, NULL, &g->no_save, 0, 0, "no forest is kept in DIR, and none is made again from it"},
+        {"drain-grace", OPTION_INTEGER, "S", &g->drain_s, 0, LIMIT_DRAIN_S_GREATEST,
+         "seconds that clients have to leave when the daemon stops"},
         {"admin", OPTION_TEXT, "HOST:PORT", &g->admin, 0, 0,
          "answers /livez, /readyz and /metrics over HTTP there; none unless it is given"},
         {"admin-open", OPTION_FLAG, NULL, &g->admin_open, 0, 0, "--admin may be an address that other machines reach"},
@@ -209,7 +232,8 @@ option_result config_read(int count, char *const *arguments, config *out, char *
                .max_connections = LIMIT_CONNECTIONS,
                .resume_grace_s = LIMIT_RESUME_GRACE_S,
                .forest_grace_s = LIMIT_FOREST_GRACE_S,
-               .quiet_s = LIMIT_QUIET_S};
+               .quiet_s = LIMIT_QUIET_S,
+               .drain_s = LIMIT_DRAIN_S};
     *out = (config){0};
     return read_options(count, arguments, &g, out, error, error_size);
 }

@@ -3,10 +3,13 @@
 #include "clock.h"
 #include "completions.h"
 #include "door.h"
+#include "drain.h"
 #include "net.h"
+#include "restore.h"
 #include "token.h"
 #include "base/version.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -70,8 +73,18 @@ static void on_job_done(void *context)
     service_unlock(shared);
 }
 
-static bool serve(const config *asked, service_options *options, const wake *bell, int listener, const char *bound,
-                  char *error, size_t error_size)
+/* What the state directory holds, before anyone comes in. */
+static void restore_forests(service *shared, const vault *place)
+{
+    if (shared->options.keeper && !restore_all(shared, place)) {
+        char folder[LOG_QUOTED];
+        log_write(LOG_ERROR, "forests not restored", "folder=%s why=\"%s\"",
+                  log_quote(place->folder, strlen(place->folder), folder), strerror(errno));
+    }
+}
+
+static bool serve(const config *asked, service_options *options, const vault *place, const wake *bell, int listener,
+                  const char *bound, char *error, size_t error_size)
 {
     service shared = {0};
     loops inside = {0};
@@ -93,13 +106,37 @@ static bool serve(const config *asked, service_options *options, const wake *bel
         return false;
     }
     check_descriptors(asked, descriptors);
+    restore_forests(&shared, place);
     announce(asked, bound, descriptors);
     door_run(&entrance);
+    drain_clients(&shared, asked->drain_us, wake_hurry_asked);
+    const bool all_saved = drain_forests(&shared);
     loops_stop(&inside);
     service_fini(&shared); /* may wait for a groom that is being built */
     loops_fini(&inside);
     log_write(LOG_INFO, "stopped", "listen=%s", bound);
-    return true;
+    if (!all_saved) {
+        snprintf(error, error_size, "not all forests could be saved in %s: see the log", place->folder);
+    }
+    return all_saved;
+}
+
+/* The place where forests are kept, and the keeper; neither where none are. */
+static bool open_vault(const config *asked, vault *place, service_options *options, char *error, size_t error_size)
+{
+    if (!asked->saves) {
+        return true;
+    }
+    if (!token_make_directory(asked->state_directory, error, error_size) ||
+        !vault_open(place, asked->state_directory, error, error_size)) {
+        return false;
+    }
+    options->keep_us = asked->save_us;
+    options->keeper = keeper_create(place, clock_monotonic_us);
+    if (!options->keeper) {
+        snprintf(error, error_size, "not enough memory or threads");
+    }
+    return options->keeper != NULL;
 }
 
 bool daemon_run(const config *asked, char *error, size_t error_size)
@@ -114,6 +151,7 @@ bool daemon_run(const config *asked, char *error, size_t error_size)
                                .quiet_us = asked->quiet_us,
                                .clock_us = clock_monotonic_us};
     char bound[NET_ADDRESS];
+    vault where = {0};
     bool served = false;
     log_set_level(asked->level);
     log_set_format(asked->format);
@@ -126,9 +164,15 @@ bool daemon_run(const config *asked, char *error, size_t error_size)
     }
     const net_place place = listen_place(asked);
     int listener = net_listen(&place, bound, error, error_size);
-    if (listener >= 0) {
-        wake_on_signals(&bell);
-        served = serve(asked, &options, &bell, listener, bound, error, error_size);
+    if (listener < 0) {
+        return false;
     }
+    wake_on_signals(&bell);
+    if (open_vault(asked, &where, &options, error, error_size)) {
+        served = serve(asked, &options, &where, &bell, listener, bound, error, error_size);
+    } else {
+        close(listener);
+    }
+    keeper_destroy(options.keeper);
     return served;
 }

@@ -105,6 +105,15 @@ static void turn(door *d)
     }
 }
 
+static void save_now(door *d)
+{
+    service_lock(d->shared);
+    log_write(LOG_INFO, "saving forests", "why=\"asked by a signal\"%s",
+              d->shared->options.keeper ? "" : " result=\"there is no state directory\"");
+    upkeep_keep_all(d->shared);
+    service_unlock(d->shared);
+}
+
 void door_run(door *d)
 {
     service_lock(d->shared);
@@ -112,6 +121,9 @@ void door_run(door *d)
     service_unlock(d->shared);
     while (!wake_stop_asked()) {
         turn(d);
+        if (wake_save_asked()) {
+            save_now(d);
+        }
     }
     close(d->listener);
     service_lock(d->shared);

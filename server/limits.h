@@ -17,6 +17,8 @@ enum {
     LIMIT_FOREST_GRACE_S = 3600,
     LIMIT_QUIET_S = 120,
     LIMIT_GRACE_S_GREATEST = 31536000,
+    LIMIT_DRAIN_S = 1, /* the default of another, and its greatest value */
+    LIMIT_DRAIN_S_GREATEST = 3600,
     LIMIT_IO_THREADS_GREATEST = 256,
     LIMIT_IO_THREADS_PER_CORE = 4, /* unless --io-threads says otherwise */
     LIMIT_HOT_SET = 32,            /* busy connections of one I/O thread, before the next one gets any */

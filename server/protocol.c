@@ -61,6 +61,10 @@ static void refuse(session *s, const proto_header *header)
 protocol_verdict protocol_judge(session *s, const proto_header *header)
 {
     session_heard(s);
+    if (s->shared->stopping && s->state != SESSION_CLOSING) {
+        session_error(s, header->type, header->request, PROTO_ERROR_STOPPING, NULL);
+        return PROTOCOL_REFUSE;
+    }
     if (s->state == SESSION_CLOSING) {
         return PROTOCOL_REFUSE;
     }

@@ -53,6 +53,7 @@ typedef struct service {
     upload_budget uploads;
     parking parked;
     service_counters counters;
+    bool stopping; /* messages are refused */
     int64_t started_us;
     int64_t progress_us;    /* when PROGRESS is due next, if anyone wants it */
     int64_t forests_due_us; /* when forests are looked at next that nobody has open; INT64_MAX: never */

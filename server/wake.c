@@ -9,7 +9,8 @@
 
 /* Signal handlers have no argument: what they touch is here. */
 static wake *signal_wake;
-static volatile sig_atomic_t stop_asked;
+static volatile sig_atomic_t stop_asked; /* how often */
+static volatile sig_atomic_t save_asked;
 
 bool wake_init(wake *w)
 {
@@ -42,21 +43,37 @@ void wake_clear(wake *w)
 
 static void on_signal(int number)
 {
-    (void)number;
-    stop_asked = 1;
+    if (number == SIGUSR1) {
+        save_asked = 1;
+    } else if (stop_asked < 2) {
+        stop_asked++;
+    }
     wake_ring(signal_wake);
 }
 
 void wake_on_signals(wake *w)
 {
-    struct sigaction stop = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
+    struct sigaction asked = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
     signal_wake = w;
-    sigaction(SIGTERM, &stop, NULL);
-    sigaction(SIGINT, &stop, NULL);
+    sigaction(SIGTERM, &asked, NULL);
+    sigaction(SIGINT, &asked, NULL);
+    sigaction(SIGUSR1, &asked, NULL);
     sigaction(SIGPIPE, &ignore, NULL);
 }
 
 bool wake_stop_asked(void)
 {
     return stop_asked != 0;
+}
+
+bool wake_hurry_asked(void)
+{
+    return stop_asked > 1;
+}
+
+bool wake_save_asked(void)
+{
+    const bool asked = save_asked != 0;
+    save_asked = 0;
+    return asked;
 }

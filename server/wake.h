@@ -19,9 +19,13 @@ void wake_ring(void *context);
 /* Before looking at what was rung for. */
 void wake_clear(wake *w);
 
-/* From now on SIGTERM and SIGINT ring `w` and wake_stop_asked is true after one; SIGPIPE is ignored. Once in a process;
- * `w` must live until its end. */
+/* From now on SIGTERM, SIGINT and SIGUSR1 ring `w`; SIGPIPE is ignored. Once in a process; `w` must live until its end.
+ */
 void wake_on_signals(wake *w);
+/* SIGTERM or SIGINT has come; more than once. */
 bool wake_stop_asked(void);
+bool wake_hurry_asked(void);
+/* SIGUSR1 has come since the last call: forests are to be brought to the disk. */
+bool wake_save_asked(void);
 
 #endif

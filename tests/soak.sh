@@ -1,7 +1,7 @@
 #!/bin/sh
 # soak.sh: what takes longer than make test may, with the time that each part took: ten simulated minutes of every style under
 # the most violent motion there is, what has threads under TSan, the same bits from both compilers at every optimisation and on
-# another architecture, and fuzzing of all that reads bytes from outside. Its last line counts all.
+# another architecture, kills at any moment, and fuzzing of all that reads bytes from outside. Its last line counts all.
 #
 # AWT_DATA: where motion files are (else ../shared/data); SECONDS_SIMULATED, FUZZ_SECONDS (of each target): for a shorter run.
 set -u
@@ -142,6 +142,8 @@ took fuzzing
 build config=release CC=clang CXX=clang++ B=build/clang
 suite "every test, clang -O2" build/clang/tests
 took "every test, clang"
+AWT_KILLS=200 AWT_SEEDS=3000 suite "200 kills at any moment, 3,000 interleavings" build/release/tests killed interleave
+took "kills and interleavings"
 build config=tsan
 suite "every test with more than one thread, TSan" build/tsan/tests server client_ e2e bench_ gusts_ worker
 took "TSan"

@@ -4,6 +4,7 @@
 #include "base/options.h"
 #include "check.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <netdb.h>
 #include <signal.h>
@@ -79,6 +80,11 @@ bool daemon_start(daemon_process *daemon, int workers, const char *const *argume
         return false;
     }
     snprintf(daemon->token_file, sizeof daemon->token_file, "%s/token", daemon->state_directory);
+    return daemon_start_again(daemon, workers, arguments);
+}
+
+bool daemon_start_again(daemon_process *daemon, int workers, const char *const *arguments)
+{
     char program[1024], count[16];
     snprintf(program, sizeof program, "%s/awtd", check_build_directory());
     snprintf(count, sizeof count, "%d", workers);
@@ -108,7 +114,13 @@ void line_stop(line_process *line)
     }
 }
 
-int daemon_stop(daemon_process *daemon)
+void daemon_kill(daemon_process *daemon)
+{
+    kill(daemon->pid, SIGKILL);
+    waitpid(daemon->pid, NULL, 0);
+}
+
+int daemon_end(daemon_process *daemon)
 {
     int status = 0, result = -1;
     kill(daemon->pid, SIGTERM);
@@ -123,8 +135,36 @@ int daemon_stop(daemon_process *daemon)
         kill(daemon->pid, SIGKILL);
         waitpid(daemon->pid, &status, 0);
     }
+    return result;
+}
+
+static void empty(const char *folder)
+{
+    DIR *files = opendir(folder);
+    for (struct dirent *entry; files && (entry = readdir(files)) != NULL;) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        unlink(path); /* fails for the folder itself and the one above */
+    }
+    if (files) {
+        closedir(files);
+    }
+}
+
+void daemon_forget(daemon_process *daemon)
+{
+    char forests[96];
+    snprintf(forests, sizeof forests, "%s/forests", daemon->state_directory);
+    empty(forests);
+    rmdir(forests);
     unlink(daemon->token_file);
     rmdir(daemon->state_directory);
+}
+
+int daemon_stop(daemon_process *daemon)
+{
+    int result = daemon_end(daemon);
+    daemon_forget(daemon);
     return result;
 }
 

@@ -16,7 +16,16 @@ typedef struct daemon_process {
 
 /* Starts it with so many workers and further arguments (NULL-terminated; may be NULL). False: it did not come up. */
 bool daemon_start(daemon_process *daemon, int workers, const char *const *arguments);
-/* Sends SIGTERM and waits. The exit status; -1 if it did not exit by itself within 20 s (then it is killed). */
+/* The same again, with the state directory that it had: after daemon_end or daemon_kill. */
+bool daemon_start_again(daemon_process *daemon, int workers, const char *const *arguments);
+/* SIGKILL, at whatever it is. */
+void daemon_kill(daemon_process *daemon);
+/* Sends SIGTERM and waits. The exit status; -1 if it did not exit by itself within 20 s (then it is killed). The state
+ * directory stays. */
+int daemon_end(daemon_process *daemon);
+/* Removes the state directory of one that has ended. */
+void daemon_forget(daemon_process *daemon);
+/* daemon_end, then daemon_forget; the exit status. */
 int daemon_stop(daemon_process *daemon);
 
 /* A bad line to a daemon: awt-relay of the same build. Who connects to `address` gets there with that delay (both ways
