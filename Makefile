@@ -30,15 +30,16 @@ INC_tests := -Itests -Iserver -Iclients -Icore -Iproto -I$(B)
 SRC_core := $(wildcard core/*/*.c core/*/*.cc)
 SRC_proto := $(wildcard proto/*.c)
 SRC_server := $(wildcard server/*.c)
-SRC_clients := $(filter-out clients/awtctl% clients/load/% clients/web/%,$(wildcard clients/*.c clients/*/*.c))
+SRC_clients := $(filter-out clients/awtctl% clients/engine_loop.c clients/load/% clients/web/%,$(wildcard clients/*.c clients/*/*.c))
 SRC_awtctl := $(wildcard clients/awtctl*.c)
 SRC_load := $(wildcard clients/load/*.c)
+SRC_loop := clients/engine_loop.c
 SRC_unit := tests/main.c $(wildcard tests/unit/*.c tests/e2e/*.c)
 SRC_bench := $(wildcard tests/bench/*.c)
 SRC_relay := $(wildcard tests/relay/*.c)
 SRC_fuzz := $(wildcard tests/fuzz/*.c)
 HEADERS := $(wildcard $(foreach r,core proto server clients tests,$(r)/*.h $(r)/*/*.h))
-SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_load) $(SRC_unit) $(SRC_bench) $(SRC_relay) $(SRC_fuzz)
+SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_load) $(SRC_loop) $(SRC_unit) $(SRC_bench) $(SRC_relay) $(SRC_fuzz)
 
 , := ,
 objects = $(patsubst %,$(B)/obj/%.o,$(1))
@@ -46,7 +47,7 @@ LIBAWT := $(B)/libawt.a
 LIBPROTO := $(B)/libawtproto.a
 LIBCLIENT := $(B)/libawtclient.a
 LIBSERVER := $(B)/libawtserver.a
-PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-load $(B)/awt-bench
+PROGRAMS := $(B)/awtd $(B)/awtctl $(B)/awt-load $(B)/awt-bench $(B)/engine_loop
 
 .PHONY: all help demo web viewer test soak sheets pictures bench bench-service format lint install clean deps deps-test deps-viewer deps-soak programs tests-binary
 .DELETE_ON_ERROR:
@@ -74,6 +75,8 @@ help:
 
 $(B)/awtd: $(B)/obj/server/main.c.o $(LIBSERVER) $(LIBAWT) $(LIBPROTO)
 $(B)/awtctl: $(call objects,$(SRC_awtctl)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+# A game's loop with hair, to be copied from.
+$(B)/engine_loop: $(call objects,$(SRC_loop)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-load: $(call objects,$(SRC_load)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/tests: $(call objects,$(SRC_unit) tests/relay/lane.c $(filter-out clients/load/awt_load.c,$(SRC_load))) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
@@ -154,8 +157,8 @@ $(B)/test_list.h: $(SRC_unit)
 $(B)/obj/tests/main.c.o: $(B)/test_list.h
 
 # The header table, checked on what the compiler really read.
-$(B)/rooms.ok: tests/lint/rooms.awk $(call objects,$(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_load))
-	@awk -f tests/lint/rooms.awk $(patsubst %,$(B)/obj/%.d,$(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_load))
+$(B)/rooms.ok: tests/lint/rooms.awk $(call objects,$(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_load) $(SRC_loop))
+	@awk -f tests/lint/rooms.awk $(patsubst %,$(B)/obj/%.d,$(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_load) $(SRC_loop))
 	@touch $@
 
 deps:
