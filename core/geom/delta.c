@@ -137,24 +137,66 @@ uint8_t delta_make(const delta_shape *shape, const uint16_t *base, const uint16_
 
 /* ---- plain numbers */
 
-static void fill_plain(const uint16_t *restrict base, const uint16_t *restrict now, size_t count, int spare_bits,
-                       uint16_t *restrict symbols)
+static const uint16_t NOTHING[BLOCK];
+
+static void fill_plain_block(const uint16_t *restrict base, const uint16_t *restrict now, int spare_bits,
+                             uint16_t *restrict symbols)
 {
-    for (size_t i = 0; i < count; i++) {
-        symbols[i] = symbol_of(now[i] - (base ? base[i] : 0), spare_bits);
+    for (int k = 0; k < BLOCK; k++) {
+        int16_t change = (int16_t)(now[k] - base[k]);
+        int16_t wrapped = (int16_t)((int16_t)((uint16_t)change << spare_bits) >> spare_bits);
+        symbols[k] = (uint16_t)((uint16_t)((uint16_t)wrapped << 1) ^ (uint16_t)(wrapped >> 15));
     }
 }
 
-/* About how many bits these take: of each as many as it has. */
-static uint64_t weigh(const uint16_t *symbols, size_t count)
+/* The block's symbols from number i on; 0 where there are no numbers left. */
+static void make_plain_block(const uint16_t *base, const uint16_t *now, size_t count, size_t i, int spare_bits,
+                             uint16_t *symbols)
 {
-    uint64_t bits = 0;
-    for (size_t i = 0; i < count; i++) {
-        for (int power = 0; power < DELTA_MAX_BITS; power++) {
-            bits += symbols[i] >= 1u << power;
-        }
+    if (i + BLOCK <= count) {
+        fill_plain_block(base ? base + i : NOTHING, now + i, spare_bits, symbols);
+        return;
     }
-    return bits;
+    uint16_t last_base[BLOCK] = {0}, last_now[BLOCK] = {0};
+    memcpy(last_now, now + i, (count - i) * sizeof *now);
+    if (base) {
+        memcpy(last_base, base + i, (count - i) * sizeof *base);
+    }
+    fill_plain_block(last_base, last_now, spare_bits, symbols);
+}
+
+static void fill_plain(const uint16_t *base, const uint16_t *now, size_t count, int spare_bits, uint16_t *symbols)
+{
+    for (size_t i = 0; i < count; i += BLOCK) {
+        make_plain_block(base, now, count, i, spare_bits, symbols + i);
+    }
+}
+
+/* Adds to each sum how many bits a symbol has: the exponent of 2 s + 1, which a float tells. */
+static void weigh_block(const uint16_t *restrict symbols, uint32_t *restrict bits)
+{
+    for (int k = 0; k < BLOCK; k++) {
+        const float odd = (float)(2 * symbols[k] + 1);
+        uint32_t number;
+        memcpy(&number, &odd, sizeof number);
+        bits[k] += (number >> 23) - 127;
+    }
+}
+
+/* About how many bits the symbols would take: of each as many as it has. */
+static uint64_t weigh_plain(const uint16_t *base, const uint16_t *now, size_t count, int spare_bits)
+{
+    uint32_t bits[BLOCK] = {0};
+    uint64_t sum = 0;
+    for (size_t i = 0; i < count; i += BLOCK) {
+        uint16_t symbols[BLOCK];
+        make_plain_block(base, now, count, i, spare_bits, symbols);
+        weigh_block(symbols, bits);
+    }
+    for (int k = 0; k < BLOCK; k++) {
+        sum += bits[k];
+    }
+    return sum;
 }
 
 bool delta_make_plain(const delta_shape *shape, const uint16_t *base, const uint16_t *now, uint16_t *symbols,
@@ -162,16 +204,8 @@ bool delta_make_plain(const delta_shape *shape, const uint16_t *base, const uint
 {
     const size_t count = delta_count(shape);
     const int spare_bits = 16 - shape->bits;
-    uint64_t changes = UINT64_MAX;
-    if (base) {
-        fill_plain(base, now, count, spare_bits, symbols);
-        changes = weigh(symbols, count);
-    }
-    fill_plain(NULL, now, count, spare_bits, symbols);
-    const bool whole = !base || weigh(symbols, count) <= changes;
-    if (!whole) {
-        fill_plain(base, now, count, spare_bits, symbols);
-    }
+    const bool whole = !base || weigh_plain(NULL, now, count, spare_bits) <= weigh_plain(base, now, count, spare_bits);
+    fill_plain(whole ? NULL : base, now, count, spare_bits, symbols);
     *all = or_all(symbols, count);
     return whole;
 }
