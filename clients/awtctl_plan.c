@@ -134,8 +134,8 @@ static const char *plan_whole(const play_words *words, play_plan *plan)
     if (!plan->style && !plan->groom) {
         plan->style = "long";
     }
-    if (plan->deltas && strcmp(words->kind, "strands") != 0) {
-        return "--deltas goes with --kind strands: other kinds have none";
+    if (plan->deltas && plan->kind != GEOM_STRANDS && plan->kind != GEOM_GUIDES) {
+        return "--deltas goes with --kind strands or guides: other kinds have none";
     }
     if (plan->every > 0 && !plan->out) {
         return "--every is about the files that --out DIR asks for";
@@ -173,7 +173,7 @@ bool play_plan_read(int argc, char *const *argv, play_plan *plan, awtctl_exit *c
         {"kind", OPTION_TEXT, "KIND", &words.kind, 0, 0, "geometry: ribbon, strands, guides, nodes"},
         {"level", OPTION_TEXT, "LEVEL", &words.level, 0, 0, "share of the hair: full, fifth, guides"},
         {"deltas", OPTION_FLAG, NULL, &plan->deltas, 0, 0,
-         "strands against the frame before; files of these are of no use alone"},
+         "strands or guides against the frame before; files of these are of no use alone"},
         {"check", OPTION_FLAG, NULL, &plan->check, 0, 0, "decode and measure every frame, not only those written"},
         {"json", OPTION_OPTIONAL_TEXT, "FILE", &plan->json, 0, 0, "all figures as JSON, to FILE or stdout"},
         {"quiet", OPTION_FLAG, NULL, &plan->quiet, 0, 0, "no progress and no table, only the summary"},

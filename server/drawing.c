@@ -284,6 +284,13 @@ static awt_status draw_nodes(const drawing_job *j, view *v)
                              &v->glb, j->error);
 }
 
+/* What the form's frames are made of: the strands' points, or, of guides, centres and *frames; else that is NULL. */
+static const float *show_points(const drawing_job *j, int form, const float **frames)
+{
+    *frames = NULL;
+    return form_at(form)->kind == GEOM_GUIDES ? show_guides(j, frames) : j->d->levels[form_at(form)->level].points;
+}
+
 /* The present frame in whole numbers. NULL: j->error says why. */
 static const kept_frame *keep_frame(const drawing_job *j, int form)
 {
@@ -293,7 +300,9 @@ static const kept_frame *keep_frame(const drawing_job *j, int form)
         return before;
     }
     kept_frame *now = drawn_form_oldest(f, j->error);
-    const geom_quantise_def def = {.points = j->d->levels[form_at(form)->level].points,
+    const float *frames = NULL, *points = show_points(j, form, &frames);
+    const geom_quantise_def def = {.points = points,
+                                   .frames = frames,
                                    .unchanged = before->sequence ? find_unchanged(j, form, before->made_at) : NULL,
                                    .previous = before->numbers};
     if (!now || geom_quantise(f->layout, &def, now->numbers, &now->clamped_points, j->error) != AWT_OK) {
@@ -305,11 +314,9 @@ static const kept_frame *keep_frame(const drawing_job *j, int form)
 
 static awt_status draw_whole(const drawing_job *j, const kept_frame *kept, view *v)
 {
-    const drawing *d = j->d;
     drawn_form *f = &j->d->forms[v->name.form];
-    const bool guides = form_at(v->name.form)->kind == GEOM_GUIDES;
-    const float *frames = NULL, *centres = guides ? show_guides(j, &frames) : NULL;
-    const geom_frame_def def = {.points = guides ? centres : d->levels[form_at(v->name.form)->level].points,
+    const float *frames = NULL, *points = show_points(j, v->name.form, &frames);
+    const geom_frame_def def = {.points = points,
                                 .frames = frames,
                                 .quantised = kept ? kept->numbers : NULL,
                                 .head = show_head(j),
@@ -325,12 +332,13 @@ static awt_status draw_whole(const drawing_job *j, const kept_frame *kept, view 
     return status;
 }
 
+/* `base` NULL, of a bare form: whole. */
 static awt_status draw_delta(const drawing_job *j, const kept_frame *base, const kept_frame *kept, view *v)
 {
     const drawn_form *f = &j->d->forms[v->name.form];
-    const geom_delta_def def = {.base = base->numbers,
+    const geom_delta_def def = {.base = base ? base->numbers : NULL,
                                 .now = kept->numbers,
-                                .base_sequence = base->sequence,
+                                .base_sequence = base ? base->sequence : 0,
                                 .sequence = kept->sequence,
                                 .head = show_head(j),
                                 .time_us = show_time_us(j)};
@@ -338,18 +346,32 @@ static awt_status draw_delta(const drawing_job *j, const kept_frame *base, const
     return geom_encode_delta(f->layout, f->scratch, &def, &v->glb, NULL, j->error);
 }
 
+static awt_status use_form(const drawing_job *j, int form)
+{
+    const frame_form *what = form_at(form);
+    drawn_form *forms = j->d->forms, *lender = NULL;
+    awt_status status = AWT_OK;
+    if (what->bare) {
+        const int meshes = form_find(what->kind, what->level, false);
+        lender = &forms[meshes];
+        status = drawn_form_use(lender, NULL, j->d->groom, meshes, j->error);
+    }
+    return status == AWT_OK ? drawn_form_use(&forms[form], lender, j->d->groom, form, j->error) : status;
+}
+
 /* The state, and what the form needs; of a form that is kept, the present frame in whole numbers is in the ring then.
  */
 static awt_status prepare(const drawing_job *j, int form, const kept_frame **kept)
 {
-    awt_status status = drawn_form_use(&j->d->forms[form], j->d->groom, form, j->error);
+    const frame_form *what = form_at(form);
+    awt_status status = use_form(j, form);
     *kept = NULL;
-    if (status == AWT_OK && form_at(form)->kind == GEOM_GUIDES) {
+    if (status == AWT_OK && what->kind == GEOM_GUIDES) {
         take_guides(j->d, j->forest);
     } else if (status == AWT_OK) {
         status = take_strands(j, form);
     }
-    if (status == AWT_OK && form_at(form)->has_deltas && j->wanted->keeps[form]) {
+    if (status == AWT_OK && what->has_deltas && (what->bare || j->wanted->keeps[form])) {
         *kept = keep_frame(j, form);
         status = *kept ? AWT_OK : j->error->status;
     }
@@ -359,7 +381,7 @@ static awt_status prepare(const drawing_job *j, int form, const kept_frame **kep
 static awt_status draw_view(const drawing_job *j, view_name name)
 {
     const int64_t begun_us = clock_monotonic_us();
-    const bool nodes = form_at(name.form)->kind == GEOM_NODES;
+    const bool nodes = form_at(name.form)->kind == GEOM_NODES, bare = form_at(name.form)->bare;
     const kept_frame *kept = NULL, *base = NULL;
     awt_status status = nodes ? AWT_OK : prepare(j, name.form, &kept);
     if (status != AWT_OK) {
@@ -375,7 +397,7 @@ static awt_status draw_view(const drawing_job *j, view_name name)
     if (!v) {
         return error_set(j->error, AWT_LIMIT, "a picture has %d views at most", LIMIT_PICTURE_VIEWS);
     }
-    status = nodes ? draw_nodes(j, v) : base ? draw_delta(j, base, kept, v) : draw_whole(j, kept, v);
+    status = nodes ? draw_nodes(j, v) : base || bare ? draw_delta(j, base, kept, v) : draw_whole(j, kept, v);
     if (status != AWT_OK) {
         picture_drop(j->out);
     }

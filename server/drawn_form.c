@@ -6,10 +6,15 @@
 
 enum { PLACES = LIMIT_DELTA_BASES + 1 };
 
-awt_status drawn_form_use(drawn_form *f, const awt_groom *groom, int number, awt_error *error)
+awt_status drawn_form_use(drawn_form *f, const drawn_form *lender, const awt_groom *groom, int number, awt_error *error)
 {
     const frame_form *form = form_at(number);
     const geom_layout_def def = {.kind = form->kind, .level = form->level};
+    if (form->bare && !f->layout) {
+        f->layout = lender->layout;
+        f->scratch = lender->scratch;
+        f->borrowed = true;
+    }
     awt_status status = f->layout ? AWT_OK : geom_layout_create(groom, &def, &f->layout, error);
     if (status == AWT_OK && !f->scratch) {
         status = geom_scratch_create(f->layout, &f->scratch, error);
@@ -24,8 +29,10 @@ awt_status drawn_form_use(drawn_form *f, const awt_groom *groom, int number, awt
 
 void drawn_form_fini(drawn_form *f)
 {
-    geom_scratch_destroy(f->scratch);
-    geom_layout_destroy(f->layout);
+    if (!f->borrowed) {
+        geom_scratch_destroy(f->scratch);
+        geom_layout_destroy(f->layout);
+    }
     free(f->unchanged);
     picture_release(f->previous);
     for (int i = 0; i < PLACES; i++) {
@@ -36,7 +43,7 @@ void drawn_form_fini(drawn_form *f)
 
 uint64_t drawn_form_bytes(const drawn_form *f)
 {
-    uint64_t bytes = f->scratch ? geom_scratch_bytes(f->scratch) : 0;
+    uint64_t bytes = f->scratch && !f->borrowed ? geom_scratch_bytes(f->scratch) : 0;
     bytes += f->unchanged ? geom_layout_patches(f->layout) * sizeof *f->unchanged : 0;
     bytes += f->frame ? f->frame->glb.capacity : 0;
     for (int i = 0; i < PLACES; i++) {

@@ -17,6 +17,7 @@ typedef struct kept_frame {
 typedef struct drawn_form {
     geom_layout *layout;
     geom_scratch *scratch;
+    bool borrowed;                          /* both: they are another form's, of the same kind and level */
     bool *unchanged;                        /* [patches]: working memory */
     picture *previous;                      /* a reference: the last whole frame's */
     const view *frame;                      /* in `previous`; NULL: there is none */
@@ -25,8 +26,10 @@ typedef struct drawn_form {
     uint32_t newest;                        /* place in `ring` */
 } drawn_form;
 
-/* Takes what is missing, for a form of that number. */
-awt_status drawn_form_use(drawn_form *f, const awt_groom *groom, int number, awt_error *error);
+/* Takes what is missing, for a form of that number: of a bare form layout and scratch from `lender`, which is that of
+ * the meshes, is in use, and outlives it; else `lender` is not looked at. */
+awt_status drawn_form_use(drawn_form *f, const drawn_form *lender, const awt_groom *groom, int number,
+                          awt_error *error);
 /* Accepts a zeroed one. */
 void drawn_form_fini(drawn_form *f);
 /* Bytes that it holds, without the layout. */

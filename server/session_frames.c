@@ -4,7 +4,7 @@
 #include "turns.h"
 
 /* The form asked for; FORM_NONE: an ERROR was sent. */
-static int find_form(session *s, const proto_message *message, uint8_t kind, uint8_t level)
+static int find_form(session *s, const proto_message *message, uint8_t kind, uint8_t level, bool deltas)
 {
     if (kind > FORM_KIND_GREATEST || level > FORM_LEVEL_GREATEST) {
         session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE,
@@ -12,7 +12,7 @@ static int find_form(session *s, const proto_message *message, uint8_t kind, uin
                       FORM_KIND_GREATEST, FORM_LEVEL_GREATEST);
         return FORM_NONE;
     }
-    int found = form_find(kind, level);
+    int found = form_find(kind, level, deltas);
     if (found == FORM_NONE) {
         session_error(s, message->type, message->request, PROTO_ERROR_NOT_SUPPORTED,
                       "there are no frames of kind %u at level %u; guides and nodes have level 0 (full) alone",
@@ -79,7 +79,7 @@ void session_step_many(session *s, const proto_message *message)
         session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE, "there is no forest in the list");
         return;
     }
-    const int form = find_form(s, message, many->kind, many->level);
+    const int form = find_form(s, message, many->kind, many->level, false);
     for (uint16_t i = 0; form != FORM_NONE && i < many->forests.count; i++) {
         step_one(s, message, &many->forests.items[i], form);
     }
@@ -89,7 +89,7 @@ void session_query(session *s, const proto_message *message)
 {
     const struct proto_query *query = &message->as.query;
     resident *r = session_resident(s, message, query->forest, !query->latest);
-    int form = r ? find_form(s, message, query->kind, query->level) : FORM_NONE;
+    int form = r ? find_form(s, message, query->kind, query->level, false) : FORM_NONE;
     if (form == FORM_NONE) {
         return;
     }
@@ -113,7 +113,7 @@ void session_binding(session *s, const proto_message *message)
 {
     const struct proto_binding *binding = &message->as.binding;
     resident *r = session_resident(s, message, binding->forest, false);
-    if (!r || find_form(s, message, GEOM_GUIDES, binding->level) == FORM_NONE) {
+    if (!r || find_form(s, message, GEOM_GUIDES, binding->level, false) == FORM_NONE) {
         return;
     }
     if (r->binding) {
@@ -127,7 +127,7 @@ void session_subscribe(session *s, const proto_message *message)
 {
     const struct proto_subscribe *subscribe = &message->as.subscribe;
     resident *r = session_resident(s, message, subscribe->forest, false);
-    int form = r ? find_form(s, message, subscribe->kind, subscribe->level) : FORM_NONE;
+    int form = r ? find_form(s, message, subscribe->kind, subscribe->level, subscribe->deltas) : FORM_NONE;
     if (form == FORM_NONE) {
         return;
     }

@@ -48,6 +48,10 @@ awt_status geom_read_guides_delta(geom_delta_reader *reader, const geom_binding 
                                   size_t size, const geom_guides *base, uint64_t base_sequence, geom_guides *out,
                                   awt_error *error);
 
+/* Whether these bytes are a delta's file, as guides are that come as numbers; if not, they may be a frame that stands
+ * for itself. What is in it is not looked at. */
+bool geom_is_delta(const void *bytes, size_t size);
+
 /* The strands of guides that were read with that binding. `out` holds nothing or an earlier frame, whose memory is used
  * again where it fits; it is written on success only: geom_strands_fini. AWT_BAD_VALUE (guides of another binding),
  * AWT_NO_MEMORY. */

@@ -91,6 +91,12 @@ static void fill_out(const geom_binding *binding, const uint16_t *numbers, int16
     memcpy(out->numbers, numbers, GUIDES_COMPONENTS * sections_of(binding) * sizeof *numbers);
 }
 
+bool geom_is_delta(const void *bytes, size_t size)
+{
+    delta_glb glb;
+    return delta_glb_read(bytes, size, &glb, NULL) == AWT_OK;
+}
+
 awt_status geom_read_guides_delta(geom_delta_reader *reader, const geom_binding *binding, const void *bytes,
                                   size_t size, const geom_guides *base, uint64_t base_sequence, geom_guides *out,
                                   awt_error *error)

@@ -2,11 +2,10 @@
 #include "viewers_fixture.h"
 #include "check.h"
 
-#include "geom/read.h"
-
 #include <stdio.h>
 
 static const struct proto_subscribe strands_with_deltas = {.kind = GEOM_STRANDS, .deltas = 1};
+static const struct proto_subscribe guides_with_deltas = {.kind = GEOM_GUIDES, .deltas = 1};
 
 /* Distinct frames among the last LIMIT_DELTA_BASES that someone has acknowledged last, and whether anyone has none of
  * them. */
@@ -26,11 +25,11 @@ static uint32_t count_bases(const viewers *v, uint64_t now, bool *lacking)
     return count;
 }
 
-TEST(server_a_thousand_viewers_at_three_speeds_cost_an_encode_for_each_base_in_the_ring)
+static void watch_by_a_thousand(const struct proto_subscribe *asked, uint32_t whole_for_all)
 {
     enum { VIEWERS = 1000, STEPS = 40 };
     viewers v;
-    viewers_init(&v, VIEWERS, &strands_with_deltas);
+    viewers_init(&v, VIEWERS, asked);
     uint64_t encoded = 0, possible = 0, sent = 0;
     uint32_t most = 0;
     for (uint64_t step = 1; step <= STEPS; step++) {
@@ -39,7 +38,7 @@ TEST(server_a_thousand_viewers_at_three_speeds_cost_an_encode_for_each_base_in_t
         const uint32_t distinct = count_bases(&v, step + 1, &lacking);
         viewers_advance(&v, step < STEPS - 5);
         const uint64_t now = v.shared.counters.frames_encoded - before;
-        CHECK(now <= distinct + 1); /* the driver asks for the whole frame, which serves who has no base too */
+        CHECK(now <= distinct + 1 + (lacking ? whole_for_all : 0)); /* the driver asks for a whole frame */
         encoded += now;
         possible += distinct;
         most = distinct > most ? distinct : most;
@@ -65,6 +64,42 @@ TEST(server_a_thousand_viewers_at_three_speeds_cost_an_encode_for_each_base_in_t
     CHECK(deltas > 10 * STEPS && whole > VIEWERS);
     CHECK(most >= 3);
     viewers_fini(&v);
+}
+
+TEST(server_a_thousand_viewers_at_three_speeds_cost_an_encode_for_each_base_in_the_ring)
+{
+    watch_by_a_thousand(&strands_with_deltas, 0); /* the driver's serves who has no base too */
+}
+
+TEST(server_a_thousand_viewers_of_guides_cost_an_encode_for_each_base_in_the_ring)
+{
+    watch_by_a_thousand(&guides_with_deltas, 1);
+}
+
+/* Whole and delta, moving and at rest; who takes no deltas sees a mesh of the same step. */
+TEST(server_guides_come_as_numbers_to_who_takes_deltas_and_as_a_mesh_to_who_does_not)
+{
+    const struct proto_subscribe mesh = {.kind = GEOM_GUIDES};
+    const struct proto_subscribe *const asked[] = {&guides_with_deltas, &mesh};
+    uint64_t bytes[2], resting[2];
+    for (int n = 0; n < 2; n++) {
+        viewers v;
+        viewers_init(&v, 1, asked[n]);
+        for (uint64_t step = 1; step <= 300; step++) {
+            viewers_advance(&v, step < 20);
+            CHECK_U64(v.each[0].frame.base, n == 0 && step > 1 ? step : 0);
+            CHECK_INT(v.each[0].frame.kind, GEOM_GUIDES);
+            CHECK_INT(v.each[0].frame.clamped_points, 0);
+            bytes[n] = step == 20 ? v.each[0].bytes : bytes[n];
+            viewers_acknowledge(&v, 0);
+        }
+        resting[n] = v.each[0].frame.glb.length;
+        CHECK_INT(v.error, 0);
+        CHECK_INT(v.each[0].whole, n == 0 ? 1 : 300);
+        viewers_fini(&v);
+    }
+    CHECK(bytes[0] < bytes[1] / 2);
+    CHECK(resting[0] < 1000); /* all of it sleeps */
 }
 
 TEST(server_deltas_are_smaller_than_whole_frames_and_nearly_nothing_at_rest)

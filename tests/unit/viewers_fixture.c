@@ -3,8 +3,14 @@
 #include "check.h"
 #include "completions.h"
 
+#include "geom/encode.h"
+
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* How far strands evaluated from guides may be from the server's. */
+#define VIEWERS_GUIDES_M 0.0002
 
 typedef struct viewers_link {
     viewers *all;
@@ -24,38 +30,33 @@ static void link_message(void *context, const proto_message *message)
     }
 }
 
-static const geom_strands *find_kept(const viewer *w, uint64_t sequence)
+/* Greatest distance along an axis. */
+static double distance(const geom_strands *a, const geom_strands *b)
 {
-    for (int i = 0; i < LIMIT_DELTA_BASES; i++) {
-        if (w->kept[i].sequence == sequence) {
-            return &w->kept[i].strands;
-        }
+    double greatest = 0;
+    if (a->strand_count != b->strand_count || a->points_per_strand != b->points_per_strand) {
+        return INFINITY;
     }
-    return NULL;
+    for (size_t i = 0; i < (size_t)a->strand_count * a->points_per_strand * 3; i++) {
+        greatest = fmax(greatest, fabs((double)a->positions[i] - (double)b->positions[i]));
+    }
+    return greatest;
 }
 
 static void decode(viewers *v, viewer *w, const struct proto_frame *frame)
 {
     awt_error error = {0};
-    const geom_strands *base = frame->base ? find_kept(w, frame->base) : NULL;
-    CHECK(frame->base == 0 || base);
-    if (frame->base == 0) {
-        geom_strands_fini(&w->shown);
-        w->shown = (geom_strands){0};
-        CHECK_INT(geom_read_frame(frame->glb.bytes, frame->glb.length, &w->shown, &error), AWT_OK);
-        w->whole++;
-    } else if (base) {
-        CHECK_INT(geom_read_delta(v->reader, frame->glb.bytes, frame->glb.length, base, frame->base, &w->shown, &error),
-                  AWT_OK);
-        w->deltas++;
-    }
+    const geom_strands *shown = NULL;
+    CHECK_INT(framering_take(w->ring, frame, v->binding, &shown, &error), AWT_OK);
     CHECK_TEXT(error.text, "");
+    w->whole += frame->base == 0;
+    w->deltas += frame->base != 0;
     w->fresh = true;
     const geom_strands *truth = &v->truth[frame->sequence % VIEWERS_FRAMES];
-    if (truth->positions && w->shown.positions && frame->level == 0) {
-        const size_t size = (size_t)truth->strand_count * truth->points_per_strand * 3 * sizeof(float);
-        CHECK_INT(truth->time_us, w->shown.time_us);
-        CHECK(memcmp(truth->positions, w->shown.positions, size) == 0);
+    if (truth->positions && shown && frame->level == 0) {
+        const double bound_m = frame->kind == GEOM_GUIDES ? VIEWERS_GUIDES_M + v->truth_step_m / 2 : 0;
+        CHECK_INT(truth->time_us, shown->time_us);
+        CHECK(distance(truth, shown) <= bound_m);
     }
 }
 
@@ -72,11 +73,7 @@ static void link_picture(void *context, picture *shown, const view *which, const
     w->frame.glb.bytes = NULL;
     w->bytes += frame->glb.length;
     w->largest = frame->glb.length > w->largest ? frame->glb.length : w->largest;
-    if (frame->kind == GEOM_STRANDS) {
-        decode(l->all, w, frame);
-    } else {
-        w->other++;
-    }
+    decode(l->all, w, frame);
     picture_release(shown);
 }
 
@@ -101,6 +98,18 @@ static void link_init(viewers *v, viewers_link *l, const struct proto_create_rep
         (session_sink){.context = l, .message = link_message, .picture = link_picture, .drained = link_drained};
 }
 
+static geom_binding *get_binding(viewers *v)
+{
+    proto_message message = {.type = PROTO_BINDING, .request = 1};
+    geom_binding *binding = NULL;
+    message.as.binding.forest = v->forest;
+    CHECK(fake_send(v->driver, &message));
+    fake_work(&v->shared, v->driver);
+    const proto_blob *bytes = &fake_expect(v->driver, PROTO_BINDING_REPLY)->as.binding_reply.binding;
+    CHECK_INT(geom_binding_read(bytes->bytes, bytes->length, &binding, NULL), AWT_OK);
+    return binding;
+}
+
 void viewers_init(viewers *v, uint32_t count, const struct proto_subscribe *asked)
 {
     *v = (viewers){.count = count,
@@ -108,7 +117,6 @@ void viewers_init(viewers *v, uint32_t count, const struct proto_subscribe *aske
     v->each = calloc(count, sizeof *v->each);
     v->links = calloc(v->link_count, sizeof *v->links);
     CHECK(v->each && v->links && fake_service_init(&v->shared, 0, 4, false));
-    CHECK_INT(geom_delta_reader_create(&v->reader, NULL), AWT_OK);
     v->driver = fake_client_open(&v->shared);
     proto_message create = fake_create(1);
     create.as.create.strands = 400; /* so that a fifth of them are more than the finest wisps */
@@ -116,6 +124,10 @@ void viewers_init(viewers *v, uint32_t count, const struct proto_subscribe *aske
     fake_work(&v->shared, v->driver);
     const struct proto_create_reply made = fake_expect(v->driver, PROTO_CREATE_REPLY)->as.create_reply;
     v->forest = made.forest;
+    v->truth_step_m = (double)(made.box_max_x - made.box_min_x) / ((1 << GEOM_STRANDS_BITS) - 1);
+    if (asked->kind == GEOM_GUIDES) {
+        v->binding = get_binding(v);
+    }
     for (uint32_t i = 0; i < count; i++) {
         viewers_link *l = &v->links[i / LIMIT_SESSION_SUBSCRIPTIONS];
         if (!l->client) {
@@ -125,8 +137,9 @@ void viewers_init(viewers *v, uint32_t count, const struct proto_subscribe *aske
         message.as.subscribe = *asked;
         message.as.subscribe.forest = v->forest;
         message.as.subscribe.credit = 1;
+        v->each[i].ring = framering_create();
         CHECK(fake_send(l->client, &message));
-        CHECK(v->each[i].handle != 0);
+        CHECK(v->each[i].ring && v->each[i].handle != 0);
     }
 }
 
@@ -136,17 +149,14 @@ void viewers_fini(viewers *v)
         fake_client_destroy(v->links[i].client);
     }
     for (uint32_t i = 0; i < v->count; i++) {
-        geom_strands_fini(&v->each[i].shown);
-        for (int k = 0; k < LIMIT_DELTA_BASES; k++) {
-            geom_strands_fini(&v->each[i].kept[k].strands);
-        }
+        framering_destroy(v->each[i].ring);
     }
     for (int i = 0; i < VIEWERS_FRAMES; i++) {
         geom_strands_fini(&v->truth[i]);
     }
     fake_client_destroy(v->driver);
     service_fini(&v->shared);
-    geom_delta_reader_destroy(v->reader);
+    geom_binding_destroy(v->binding);
     free(v->each);
     free(v->links);
 }
@@ -167,7 +177,7 @@ void viewers_advance(viewers *v, bool moves)
     /* the truth first, so that what viewers get can be compared with it: the picture is the job's until it is taken */
     const resident *r = registry_find(&v->shared.forests, v->forest);
     const picture *drawn = r->work.drawn;
-    const view *whole = drawn ? picture_view(drawn, (view_name){.form = form_find(GEOM_STRANDS, 0)}) : NULL;
+    const view *whole = drawn ? picture_view(drawn, (view_name){.form = form_find(GEOM_STRANDS, 0, false)}) : NULL;
     CHECK(whole != NULL);
     if (whole) {
         geom_strands *truth = &v->truth[drawn->figures.sequence % VIEWERS_FRAMES];
@@ -195,22 +205,6 @@ void viewers_acknowledge(viewers *v, uint32_t number)
     if (!w->fresh) {
         return;
     }
-    const size_t positions = (size_t)w->shown.strand_count * w->shown.points_per_strand * 3;
-    geom_strands *place = &w->kept[w->oldest].strands;
-    const bool fits = place->positions && place->strand_count == w->shown.strand_count;
-    if (!fits) {
-        geom_strands_fini(place);
-    }
-    float *points = fits ? place->positions : malloc(positions * sizeof(float));
-    float *widths = fits ? place->widths : malloc(w->shown.points_per_strand * sizeof(float));
-    CHECK(points && widths);
-    memcpy(points, w->shown.positions, positions * sizeof(float));
-    memcpy(widths, w->shown.widths, w->shown.points_per_strand * sizeof(float));
-    *place = w->shown;
-    place->positions = points;
-    place->widths = widths;
-    w->kept[w->oldest].sequence = w->last;
-    w->oldest = (w->oldest + 1) % LIMIT_DELTA_BASES;
     w->fresh = false;
     w->had = w->last;
     viewers_credit(v, number, 1, w->last);

@@ -4,25 +4,20 @@
 
 #include "server_fixture.h"
 
-#include "geom/read.h"
+#include "framering.h"
 
 enum { VIEWERS_FRAMES = 96 /* sequences that are compared */ };
 
-/* A subscription with what its client keeps. */
+/* A subscription with what its client keeps: the last frames that it read. */
 typedef struct viewer {
     uint64_t handle;
-    uint64_t last;                 /* sequence of the last frame that came */
-    uint64_t had;                  /* the newest acknowledged */
-    uint32_t whole, deltas, other; /* frames that came: of strands, and of other forms */
-    uint64_t bytes, largest;       /* GLB bytes: all, and of the largest frame */
-    struct proto_frame frame;      /* the last one, without its GLB */
-    struct {
-        uint64_t sequence; /* 0: none */
-        geom_strands strands;
-    } kept[LIMIT_DELTA_BASES]; /* the newest ones acknowledged */
-    uint32_t oldest;
-    geom_strands shown; /* the last frame of strands */
-    bool fresh;         /* and it is not acknowledged yet */
+    uint64_t last;            /* sequence of the last frame that came */
+    uint64_t had;             /* the newest acknowledged */
+    uint32_t whole, deltas;   /* frames that came */
+    uint64_t bytes, largest;  /* GLB bytes: all, and of the largest frame */
+    struct proto_frame frame; /* the last one, without its GLB */
+    framering *ring;
+    bool fresh; /* that one is not acknowledged yet */
 } viewer;
 
 /* Viewers on as many connections as their number asks for, and the one who drives. */
@@ -36,7 +31,8 @@ typedef struct viewers {
     viewer *each; /* [count] */
     struct viewers_link *links;
     uint32_t link_count;
-    geom_delta_reader *reader;
+    geom_binding *binding;              /* where they see guides */
+    double truth_step_m;                /* from one whole number of the truth to the next */
     geom_strands truth[VIEWERS_FRAMES]; /* the whole frames, by sequence */
     int error;                          /* code of the last ERROR that any viewer got */
 } viewers;
@@ -46,12 +42,13 @@ void viewers_init(viewers *v, uint32_t count, const struct proto_subscribe *aske
 void viewers_fini(viewers *v);
 
 /* Moves the head, where it `moves`, and advances by 10 ms; takes the whole frame as the truth. All frames that viewers
- * get are decoded and compared with it to the bit. */
+ * get are decoded and compared with it: strands to the bit, those evaluated from guides within the bound of
+ * GEOMETRY.md. */
 void viewers_advance(viewers *v, bool moves);
 
 /* CREDIT of so many frames, saying that it has `have`. */
 void viewers_credit(viewers *v, uint32_t number, uint32_t frames, uint64_t have);
-/* Keeps the frame that came last and acknowledges it, with credit for the next one. Nothing where none came. */
+/* Acknowledges the frame that came last, with credit for the next one. Nothing where none came. */
 void viewers_acknowledge(viewers *v, uint32_t number);
 
 #endif
