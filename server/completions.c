@@ -2,6 +2,7 @@
 #include "completions.h"
 #include "clock.h"
 #include "convert.h"
+#include "load_watch.h"
 #include "log.h"
 #include "metrics.h"
 #include "published.h"
@@ -251,6 +252,7 @@ bool completions_take(service *shared)
         job *next = done->next;
         resident *r = registry_take_back(done);
         count(&shared->counters, &r->work);
+        load_watch_count(shared, r);
         if (r->work.making) {
             take_created(shared, r);
         } else {

@@ -66,6 +66,8 @@ enum {
     LIMIT_IDLE_MESSAGES = 3
 };
 
+enum { LIMIT_BUSY_RETRY_MS = 100, LIMIT_FULL_RETRY_MS = 2000 }; /* ERROR BUSY's retry_after_ms: one queue; all */
+
 /* Bytes. */
 #define LIMIT_UPLOAD_BYTES (UINT64_C(256) << 20)       /* one file */
 #define LIMIT_UPLOADS_BYTES (UINT64_C(512) << 20)      /* all uploads of all connections */
@@ -88,6 +90,7 @@ enum {
 #define LIMIT_FREE_ASLEEP_US INT64_C(250000)     /* it is at rest, and somebody looks; */
 #define LIMIT_FREE_FORGOTTEN_US INT64_C(1000000) /* it is at rest, and nobody looks */
 #define LIMIT_POSE_DELAY_US INT64_C(250000)      /* that a free-running forest's poses are shown later at most */
+#define LIMIT_LOAD_LOOK_US INT64_C(500000)       /* from one look at what forests cost to the next */
 #define LIMIT_PROGRESS_US INT64_C(100000)        /* from one PROGRESS to the next */
 #define LIMIT_ACCEPT_PAUSE_US INT64_C(100000)    /* no accept for so long when descriptors have run out */
 #define LIMIT_STOP_FLUSH_US INT64_C(2000000)     /* after SIGTERM, for what is still unsent */

@@ -58,6 +58,7 @@ static void link_resident(registry *reg, resident *r)
 {
     r->waiting_end = &r->waiting;
     r->importance = 1;
+    r->lowered.thin = 1;
     r->previous = reg->last;
     *(reg->last ? &reg->last->next : &reg->first) = r;
     reg->last = r;

@@ -11,6 +11,7 @@
 
 #include "forest_work.h"
 #include "handles.h"
+#include "load.h"
 #include "pose_delay.h"
 #include "worker.h"
 
@@ -58,6 +59,8 @@ typedef struct resident {
     int64_t moves_until_us; /* free-running: when its last pose is reached */
     pose_delay delay;
     float importance; /* SET_CLOCK's */
+    load_meter meter;
+    load_measures lowered; /* while there is too much to do */
 
     /* what MOTION and SET_PARAMS are checked against: as the forest will be once `waiting` is done */
     bool moved;

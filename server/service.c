@@ -11,6 +11,7 @@ bool service_init(service *s, const service_options *options)
     *s = (service){.options = *options};
     s->uploads.greatest = LIMIT_UPLOADS_BYTES;
     s->started_us = options->clock_us();
+    s->load_looked_us = s->started_us;
     s->forests_due_us = options->forest_grace_us > 0 ? s->started_us : INT64_MAX;
     s->keep_due_us = options->keeper && options->keep_us > 0 ? s->started_us + options->keep_us : INT64_MAX;
     s->has_lock = pthread_mutex_init(&s->lock, NULL) == 0;

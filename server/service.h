@@ -53,7 +53,9 @@ typedef struct service {
     upload_budget uploads;
     parking parked;
     service_counters counters;
-    bool stopping; /* messages are refused */
+    bool stopping;          /* messages are refused */
+    load_verdict load;      /* of the last look at what forests cost (load_watch.h) */
+    int64_t load_looked_us; /* when that was */
     int64_t started_us;
     int64_t progress_us;    /* when PROGRESS is due next, if anyone wants it */
     int64_t forests_due_us; /* when forests are looked at next that nobody has open; INT64_MAX: never */

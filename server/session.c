@@ -91,6 +91,9 @@ static void send_error(session *s, uint16_t about, uint64_t request, int code, c
     proto_message message = {.type = PROTO_ERROR, .request = request};
     message.as.error.code = (uint16_t)code;
     message.as.error.retry = proto_error_retry(code);
+    message.as.error.retry_after_ms = code != PROTO_ERROR_BUSY ? 0
+                                      : s->shared->load.full   ? LIMIT_FULL_RETRY_MS
+                                                               : LIMIT_BUSY_RETRY_MS;
     message.as.error.about = about;
     message.as.error.text = proto_str_of(text);
     s->shared->counters.errors_sent++;
@@ -139,6 +142,13 @@ void session_picture(session *s, picture *shown, const view *v, uint64_t request
 {
     if (s->state != SESSION_CLOSING) {
         s->sink.picture(s->sink.context, picture_hold(shown), v, &(delivery){.request = request});
+    }
+}
+
+void session_stale_picture(session *s, picture *shown, const view *v, uint64_t request)
+{
+    if (s->state != SESSION_CLOSING) {
+        s->sink.picture(s->sink.context, picture_hold(shown), v, &(delivery){.request = request, .stale = true});
     }
 }
 
@@ -346,9 +356,8 @@ static void break_promises(session *s, int64_t now_us)
         const resident *r = registry_find(&s->shared->forests, late.forest);
         const view *v = r ? picture_view(r->latest, (view_name){.form = late.form}) : NULL;
         s->pending--;
-        if (v && s->state != SESSION_CLOSING) {
-            s->sink.picture(s->sink.context, picture_hold(r->latest), v,
-                            &(delivery){.request = late.request, .stale = true});
+        if (v) {
+            session_stale_picture(s, r->latest, v, late.request);
         } else {
             session_error(s, PROTO_STEP_MANY, late.request, PROTO_ERROR_BUSY,
                           "the deadline has passed, and of no step there is a frame of that kind yet");

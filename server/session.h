@@ -87,6 +87,9 @@ void session_prompt(session *s);
 /* Sends a view of a picture as the answer of `request`; holds its own reference. */
 void session_picture(session *s, picture *shown, const view *v, uint64_t request);
 
+/* The same where the picture is older than was asked for. */
+void session_stale_picture(session *s, picture *shown, const view *v, uint64_t request);
+
 /* ---- forests of a session --------------------------------------------------------------------------------------- */
 
 /* Opens a forest, or widens what it may do there. False: an ERROR about that message was sent. */

@@ -47,6 +47,16 @@ static uint64_t newest_base(const subscription *s, int number)
     return makes_deltas(s, number) ? bases_at(&s->bases, number, 0) : 0;
 }
 
+/* The form asked for, or what is made instead while there is too much to do. */
+static int richest(const subscription *s)
+{
+    int form = s->form;
+    for (uint32_t n = 0; n < s->forest->lowered.coarser && form_at(form)->poorer != FORM_NONE; n++) {
+        form = form_at(form)->poorer;
+    }
+    return form;
+}
+
 static void wish(const subscription *s, int number, wishes *out)
 {
     wishes_add(out, (view_name){.form = number, .base = newest_base(s, number)});
@@ -62,7 +72,7 @@ static bool is_known(const resident *forest, const form_size *last)
  * any more, to be measured. */
 static void wish_within_budget(const subscription *s, wishes *out)
 {
-    for (int i = s->form; i != FORM_NONE; i = form_at(i)->poorer) {
+    for (int i = richest(s); i != FORM_NONE; i = form_at(i)->poorer) {
         const form_size *whole = &s->forest->whole[i], *delta = &s->forest->delta[i];
         const form_size *last = newest_base(s, i) && is_known(s->forest, delta) ? delta : whole;
         const bool known = is_known(s->forest, last), fits = known && last->bytes <= s->budget;
@@ -87,7 +97,7 @@ void subscriptions_wish(const resident *forest, bool steps, wishes *out)
         if (s->budget > 0) {
             wish_within_budget(s, out);
         } else {
-            wish(s, s->form, out);
+            wish(s, richest(s), out);
         }
     }
 }
@@ -101,7 +111,7 @@ int64_t subscriptions_interval_us(const resident *forest)
             shortest_us = interval_us;
         }
     }
-    return shortest_us;
+    return shortest_us * (int64_t)forest->lowered.thin;
 }
 
 /* The newest delta of a form that the receiver can use, else the whole frame; NULL: the picture has neither. */
@@ -120,10 +130,10 @@ static const view *view_of_form(const subscription *s, int number)
 const view *subscription_view(const subscription *s)
 {
     if (s->budget == 0) {
-        return view_of_form(s, s->form);
+        return view_of_form(s, richest(s));
     }
     const view *least = NULL;
-    for (int i = s->form; i != FORM_NONE; i = form_at(i)->poorer) {
+    for (int i = richest(s); i != FORM_NONE; i = form_at(i)->poorer) {
         const view *v = view_of_form(s, i);
         if (v && v->glb.size <= s->budget) {
             return v;

@@ -94,9 +94,7 @@ fake_client *fake_client_open(service *shared)
 void fake_client_destroy(fake_client *client)
 {
     session_fini(&client->talk);
-    for (uint32_t i = 0; i < client->count; i++) {
-        free(client->received[i].bytes);
-    }
+    fake_forget(client);
     free(client);
 }
 
@@ -134,6 +132,14 @@ bool fake_send(fake_client *client, const proto_message *message)
 const proto_message *fake_receive(fake_client *client)
 {
     return client->next < client->count ? &client->received[client->next++].message : NULL;
+}
+
+void fake_forget(fake_client *client)
+{
+    for (uint32_t i = 0; i < client->count; i++) {
+        free(client->received[i].bytes);
+    }
+    client->next = client->count = 0;
 }
 
 const proto_message *fake_expect(fake_client *client, uint16_t type)

@@ -40,6 +40,8 @@ bool fake_send_bytes(fake_client *client, uint16_t type, uint16_t flags, const u
 
 /* The next message that the session sent; NULL: none. */
 const proto_message *fake_receive(fake_client *client);
+/* Makes room: what was received is forgotten. */
+void fake_forget(fake_client *client);
 /* The next message is of that type, or the check fails; never NULL. */
 const proto_message *fake_expect(fake_client *client, uint16_t type);
 /* The next message is an ERROR of that code. */
