@@ -234,6 +234,6 @@ option_result config_read(int count, char *const *arguments, config *out, char *
                .forest_grace_s = LIMIT_FOREST_GRACE_S,
                .quiet_s = LIMIT_QUIET_S,
                .drain_s = LIMIT_DRAIN_S};
-    *out = (config){0};
+    *out = (config){.argument_count = count, .arguments = arguments};
     return read_options(count, arguments, &g, out, error, error_size);
 }

@@ -25,7 +25,9 @@ typedef struct config {
     int64_t resume_grace_us, forest_grace_us, quiet_us; /* see service.h */
     log_level level;
     log_format format;
-    bool check; /* only say whether it could start */
+    bool check;             /* only say whether it could start */
+    int argument_count;     /* what it was read from, to be read again */
+    char *const *arguments; /* not copied */
 } config;
 
 /* Reads arguments[0 .. count-1] (without the program's name), and what they and $AWTD_... name. OPTIONS_HELP and

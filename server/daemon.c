@@ -1,10 +1,13 @@
 /* daemon.c: see daemon.h. */
 #include "daemon.h"
+#include "admin.h"
 #include "clock.h"
 #include "completions.h"
 #include "door.h"
 #include "drain.h"
+#include "health.h"
 #include "net.h"
+#include "reload.h"
 #include "restore.h"
 #include "token.h"
 #include "base/version.h"
@@ -25,10 +28,21 @@ static net_place listen_place(const config *asked)
                                            : NULL};
 }
 
+static net_place admin_place(const config *asked)
+{
+    return (net_place){.option = "admin",
+                       .host = asked->admin_host,
+                       .port = asked->admin_port,
+                       .loopback_why = asked->admin_open
+                                           ? NULL
+                                           : "it asks nobody for a token: choose 127.0.0.1 or ::1, or say "
+                                             "--admin-open if others may see what it tells"};
+}
+
 bool daemon_check(const config *asked, char *error, size_t error_size)
 {
-    const net_place place = listen_place(asked);
-    return net_check(&place, error, error_size) &&
+    const net_place place = listen_place(asked), admins = admin_place(asked);
+    return net_check(&place, error, error_size) && (!asked->admin_port[0] || net_check(&admins, error, error_size)) &&
            (asked->no_auth || token_check(asked->token_file, !asked->own_token_file, error, error_size));
 }
 
@@ -45,6 +59,7 @@ static bool open_token(const config *asked, service_options *options, char *erro
 /* Scripts wait for this line: it says that connections are taken, and on which port. */
 static void announce(const config *asked, const char *bound, uint64_t descriptors)
 {
+    health_set_serving();
     printf("listening on %s\n", bound);
     fflush(stdout);
     char token[LOG_QUOTED];
@@ -61,6 +76,33 @@ static void check_descriptors(const config *asked, uint64_t descriptors)
         log_write(LOG_WARN, "few descriptors", "connections=%lu descriptors=%llu wanted=%llu",
                   (unsigned long)asked->max_connections, (unsigned long long)descriptors, (unsigned long long)wanted);
     }
+}
+
+/* What the operator is answered with, and settings that are read again. */
+typedef struct operation {
+    reload settings;
+    admin *operators;
+} operation;
+
+/* Answers the operator from now on, for there may be much to do before clients are served. */
+static bool start_admin(operation *o, service *shared, const config *asked, char *error, size_t error_size)
+{
+    const net_place place = admin_place(asked);
+    char bound[NET_ADDRESS];
+    int listener = asked->admin_port[0] ? net_listen(&place, bound, error, error_size) : -1;
+    if (asked->admin_port[0] && listener < 0) {
+        return false;
+    }
+    o->settings = (reload){.running = *asked, .most_forests = asked->max_forests, .shared = shared};
+    o->operators = admin_create(&(admin_def){.listener = listener, .reload = reload_settings, .context = &o->settings});
+    if (!o->operators) {
+        snprintf(error, error_size, "no memory, thread or descriptor is left for --admin");
+        return false;
+    }
+    if (listener >= 0) {
+        printf("admin on %s\n", bound);
+    }
+    return true;
 }
 
 /* What a worker does with the job that it has just done: brings the results to those who asked. */
@@ -88,6 +130,7 @@ static bool serve(const config *asked, service_options *options, const vault *pl
 {
     service shared = {0};
     loops inside = {0};
+    operation operated = {0};
     door entrance = {.shared = &shared,
                      .inside = &inside,
                      .own = {.bell = *bell},
@@ -105,6 +148,13 @@ static bool serve(const config *asked, service_options *options, const vault *pl
         close(listener);
         return false;
     }
+    if (!start_admin(&operated, &shared, asked, error, error_size)) {
+        close(listener);
+        loops_stop(&inside);
+        service_fini(&shared);
+        loops_fini(&inside);
+        return false;
+    }
     check_descriptors(asked, descriptors);
     restore_forests(&shared, place);
     announce(asked, bound, descriptors);
@@ -112,6 +162,7 @@ static bool serve(const config *asked, service_options *options, const vault *pl
     drain_clients(&shared, asked->drain_us, wake_hurry_asked);
     const bool all_saved = drain_forests(&shared);
     loops_stop(&inside);
+    admin_destroy(operated.operators);
     service_fini(&shared); /* may wait for a groom that is being built */
     loops_fini(&inside);
     log_write(LOG_INFO, "stopped", "listen=%s", bound);

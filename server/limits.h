@@ -24,6 +24,8 @@ enum {
     LIMIT_HOT_SET = 32,            /* busy connections of one I/O thread, before the next one gets any */
     LIMIT_HOT_NEWCOMERS = 128,     /* connections of an I/O thread that takes new ones; beyond, they begin as idle */
     LIMIT_BACKLOG = 1024,          /* connections that wait for accept */
+    LIMIT_ADMIN_CONNECTIONS = 16,  /* to the operator's address at once; the oldest makes room */
+    LIMIT_ADMIN_REQUEST = 4096,    /* bytes of one request there */
     LIMIT_PATH = 1024,             /* bytes of the state directory's and the token file's path */
     LIMIT_CONFIG_FILE = 64 * 1024, /* bytes of a file of settings */
 
@@ -94,6 +96,7 @@ enum { LIMIT_BUSY_RETRY_MS = 100, LIMIT_FULL_RETRY_MS = 2000 }; /* ERROR BUSY's 
 #define LIMIT_PROGRESS_US INT64_C(100000)        /* from one PROGRESS to the next */
 #define LIMIT_ACCEPT_PAUSE_US INT64_C(100000)    /* no accept for so long when descriptors have run out */
 #define LIMIT_STOP_FLUSH_US INT64_C(2000000)     /* after SIGTERM, for what is still unsent */
+#define LIMIT_ADMIN_US INT64_C(5000000)        /* from accept to the answer's last byte, at the operator's address */
 
 /* Nanoseconds for each idle connection that pass before all of them are looked at again, so that the looking takes a
  * small part of one processor however many there are. */

@@ -9,8 +9,9 @@
 
 /* Signal handlers have no argument: what they touch is here. */
 static wake *signal_wake;
+static wake *hangup_wake;
 static volatile sig_atomic_t stop_asked; /* how often */
-static volatile sig_atomic_t save_asked;
+static volatile sig_atomic_t save_asked, hangup_asked;
 
 bool wake_init(wake *w)
 {
@@ -59,6 +60,27 @@ void wake_on_signals(wake *w)
     sigaction(SIGINT, &asked, NULL);
     sigaction(SIGUSR1, &asked, NULL);
     sigaction(SIGPIPE, &ignore, NULL);
+}
+
+static void on_hangup(int number)
+{
+    (void)number;
+    hangup_asked = 1;
+    wake_ring(hangup_wake);
+}
+
+void wake_on_hangup(wake *w)
+{
+    struct sigaction hangup = {.sa_handler = on_hangup, .sa_flags = SA_RESTART};
+    hangup_wake = w;
+    sigaction(SIGHUP, &hangup, NULL);
+}
+
+bool wake_take_hangup(void)
+{
+    const bool asked = hangup_asked != 0;
+    hangup_asked = 0;
+    return asked;
 }
 
 bool wake_stop_asked(void)

@@ -28,4 +28,9 @@ bool wake_hurry_asked(void);
 /* SIGUSR1 has come since the last call: forests are to be brought to the disk. */
 bool wake_save_asked(void);
 
+/* From now on SIGHUP rings `w`, which must live until the process ends. */
+void wake_on_hangup(wake *w);
+/* Whether SIGHUP came since the last call. After wake_clear. */
+bool wake_take_hangup(void);
+
 #endif

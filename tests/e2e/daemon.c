@@ -30,12 +30,11 @@ static void run_daemon(const char *program, int out, char *const *arguments)
     _exit(127);
 }
 
-/* Reads "listening on HOST:PORT" from the daemon's standard output. */
-static bool read_address(int from, char *address, size_t size)
+/* A line of the daemon's standard output, without its end. */
+static bool read_line(int from, char *line, size_t size)
 {
-    char line[128];
     size_t used = 0;
-    while (used + 1 < sizeof line) {
+    while (used + 1 < size) {
         ssize_t got = read(from, line + used, 1);
         if (got <= 0) {
             return false;
@@ -46,16 +45,36 @@ static bool read_address(int from, char *address, size_t size)
         used++;
     }
     line[used] = '\0';
-    static const char prefix[] = "listening on ";
-    if (strncmp(line, prefix, sizeof prefix - 1) != 0) {
-        return false;
-    }
-    snprintf(address, size, "%s", line + sizeof prefix - 1);
     return true;
 }
 
+/* Copies what follows `prefix`. False: it is not there. */
+static bool take_after(const char *line, const char *prefix, char *out, size_t size)
+{
+    const bool there = strncmp(line, prefix, strlen(prefix)) == 0;
+    if (there) {
+        snprintf(out, size, "%s", line + strlen(prefix));
+    }
+    return there;
+}
+
+/* Reads "listening on HOST:PORT" and, with `admin`, before it, if it comes, "admin on HOST:PORT". */
+static bool read_addresses(int from, char *address, char *admin, size_t size)
+{
+    char line[128];
+    while (read_line(from, line, sizeof line)) {
+        if (take_after(line, "listening on ", address, size)) {
+            return true;
+        }
+        if (!admin || !take_after(line, "admin on ", admin, size)) {
+            return false;
+        }
+    }
+    return false;
+}
+
 /* Starts a program that says where it listens. */
-static bool spawn(const char *const *all, pid_t *pid, char *address, size_t size)
+static bool spawn(const char *const *all, pid_t *pid, char *address, char *admin, size_t size)
 {
     int out[2];
     if (pipe(out) != 0) {
@@ -67,7 +86,7 @@ static bool spawn(const char *const *all, pid_t *pid, char *address, size_t size
         run_daemon(all[0], out[1], (char *const *)(uintptr_t)all);
     }
     close(out[1]);
-    bool up = *pid > 0 && read_address(out[0], address, size);
+    bool up = *pid > 0 && read_addresses(out[0], address, admin, size);
     close(out[0]);
     return up;
 }
@@ -94,7 +113,7 @@ bool daemon_start_again(daemon_process *daemon, int workers, const char *const *
     for (; arguments && *arguments && used + 1 < sizeof all / sizeof all[0]; arguments++) {
         all[used++] = *arguments;
     }
-    return spawn(all, &daemon->pid, daemon->address, sizeof daemon->address);
+    return spawn(all, &daemon->pid, daemon->address, daemon->admin, sizeof daemon->address);
 }
 
 bool line_start(line_process *line, const char *target, const char *delay_ms, const char *jitter_ms, const char *rate)
@@ -103,7 +122,7 @@ bool line_start(line_process *line, const char *target, const char *delay_ms, co
     snprintf(program, sizeof program, "%s/awt-relay", check_build_directory());
     const char *const all[] = {program,    "--connect", target,   "--delay", delay_ms,
                                "--jitter", jitter_ms,   "--rate", rate,      NULL};
-    return spawn(all, &line->pid, line->address, sizeof line->address);
+    return spawn(all, &line->pid, line->address, NULL, sizeof line->address);
 }
 
 void line_stop(line_process *line)
@@ -179,9 +198,14 @@ awtclient *daemon_client(const daemon_process *daemon)
 
 int daemon_socket(const daemon_process *daemon)
 {
+    return daemon_socket_to(daemon->address);
+}
+
+int daemon_socket_to(const char *address)
+{
     char host[48], port[8];
     struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM}, *list = NULL;
-    if (!options_split_address(daemon->address, host, sizeof host, port, sizeof port) ||
+    if (!options_split_address(address, host, sizeof host, port, sizeof port) ||
         getaddrinfo(host, port, &hints, &list) != 0) {
         return -1;
     }

@@ -10,6 +10,7 @@
 typedef struct daemon_process {
     pid_t pid;
     char address[128];
+    char admin[128]; /* where it answers HTTP; empty: nowhere */
     char state_directory[64];
     char token_file[96];
 } daemon_process;
@@ -43,5 +44,7 @@ void line_stop(line_process *line);
 awtclient *daemon_client(const daemon_process *daemon);
 /* A bare connected socket, or -1. */
 int daemon_socket(const daemon_process *daemon);
+/* The same to "HOST:PORT". */
+int daemon_socket_to(const char *address);
 
 #endif

@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 TEST(metrics_histogram_bounds_are_two_to_each_doubling)
 {
@@ -99,6 +100,22 @@ TEST(metrics_are_written_as_prometheus_reads_them)
     CHECK(prometheus_value(text, "process_start_time_seconds") > 1.6e9);
     CHECK(prometheus_value(text, "process_cpu_seconds_total") >= 0);
     free(text);
+}
+
+TEST(metrics_pass_prometheuss_own_check)
+{
+    char path[] = "/tmp/awtd-test-XXXXXX", command[128];
+    if (system("command -v promtool >/dev/null 2>&1") != 0) {
+        check_skip("no promtool here (Debian's prometheus)");
+        return;
+    }
+    FILE *file = fdopen(mkstemp(path), "w");
+    CHECK(file != NULL);
+    metrics_write(file);
+    fclose(file);
+    snprintf(command, sizeof command, "promtool check metrics <%s", path);
+    CHECK_INT(system(command), 0);
+    unlink(path);
 }
 
 TEST(metrics_reader_of_the_tests_refuses_what_is_not_the_format)
