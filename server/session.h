@@ -113,6 +113,8 @@ bool session_push(session *s, const proto_message *message, resident *r, forest_
 /* A free place for one. NULL: LIMIT_SESSION_SUBSCRIPTIONS are taken, or no memory. */
 subscription *session_subscription_place(session *s);
 void session_end_subscriptions(session *s);
+/* Those on one forest. */
+void session_end_subscriptions_on(session *s, uint64_t forest);
 /* NULL: none of that handle. */
 subscription *session_subscription(session *s, uint64_t handle);
 
