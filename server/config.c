@@ -28,10 +28,10 @@ static long long processors(void)
 #endif
 }
 
-/* Small poll sets beat few threads. */
+/* Small poll sets beat few threads; the loop of the idle ones counts with them. */
 static long long io_threads(void)
 {
-    long long count = LIMIT_IO_THREADS_PER_CORE * processors();
+    long long count = LIMIT_IO_THREADS_PER_CORE * processors() - 1;
     return count < LIMIT_IO_THREADS_GREATEST ? count : LIMIT_IO_THREADS_GREATEST;
 }
 
