@@ -128,6 +128,17 @@ $(B)/messages.mjs: clients/web/make_messages.mjs proto/messages.def proto/errors
 	$(Q)node $< proto > $@
 web: $(B)/messages.mjs $(B)/receiver.wasm $(B)/motion.wasm
 
+# The client library without its socket, its poll and its random numbers: likewise.
+SRC_portable := $(filter core/%,$(SRC_receiver)) $(wildcard proto/*.c) $(patsubst %,clients/%.c,awtclock awtframes awtpace awtspace \
+	awtwrite codec framemix framering outqueue)
+EXPORTS_portable := $(EXPORTS),_awtcodec_init,_awtcodec_next,_awtframes_create,_awtframes_take,_awtframes_show,_awtwrite_points
+$(B)/client.dll: $(SRC_portable) $(HEADERS)
+	@echo "  MINGW $@"
+	$(Q)$(MINGW_CC) $(CFLAGS_web) -D__USE_MINGW_ANSI_STDIO=1 -Wno-float-conversion -shared -o $@ $(SRC_portable)
+$(B)/client.wasm: $(SRC_portable) $(HEADERS)
+	@echo "  EMCC $@"
+	$(Q)$(EMCC) $(CFLAGS_web) $(EXPORTS_portable) -o $@ $(SRC_portable)
+
 # A reader of frames that shares no code with us: tinygltf with Draco, as Debian does not build it (tests/node/check_others.mjs).
 $(B)/read_tinygltf: tests/node/read_tinygltf.cc
 	@mkdir -p $(@D)
@@ -203,10 +214,7 @@ format:
 lint: all
 	$(Q)clang-format --dry-run --Werror $(SRC_ALL) $(HEADERS)
 
-prefix ?= /usr/local
-install: programs
-	install -d $(DESTDIR)$(prefix)/bin
-	install $(PROGRAMS) $(DESTDIR)$(prefix)/bin
+include clients/install.mk
 
 clean:
 	rm -rf build

@@ -1,10 +1,19 @@
-/* awtclient.h: talking to awtd from C by calls that wait: a link (awtlink.h, which holds options and errors, and is for
+/* awtclient.h: the one header of libawtclient, for C and C++. It brings the others: links that never wait (awtlink.h),
+ * frames to hair of any time (awtframes.h, awtpace.h), into an engine's memory (awtwrite.h) and axes (awtspace.h), clocks
+ * and credit (awtclock.h), and the messages (proto.h).
+ *
+ * Here is talking to awtd by calls that wait: a link (awtlink.h, which holds options and errors, and is for
  * callers that cannot wait), and a poll until what is wanted has come. The codec (bytes in, messages out) is in codec.h
  * and knows no socket; the one file with a socket is socket.c. */
 #ifndef AWTCLIENT_H
 #define AWTCLIENT_H
 
+#include "awtclock.h"
+#include "awtframes.h"
 #include "awtlink.h"
+#include "awtpace.h"
+#include "awtspace.h"
+#include "awtwrite.h"
 
 #ifdef __cplusplus
 extern "C" {

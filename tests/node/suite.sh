@@ -74,6 +74,8 @@ judge guides env AWT_FRAMES="$work/guides" "$build/tests" geom_guides_for_other_
 others guides
 cross "receiver for Windows" x86_64-w64-mingw32-gcc make --no-print-directory "$build/receiver.dll" B="$build"
 cross "receiver as WebAssembly" emcc as_webassembly
+cross "client library for Windows" x86_64-w64-mingw32-gcc make --no-print-directory "$build/client.dll" B="$build"
+cross "client library as WebAssembly" emcc make --no-print-directory "$build/client.wasm" B="$build"
 
 mkdir "$work/frames"
 judge frames env AWT_FRAMES="$work/frames" "$build/tests" geom_frames_for_other_readers

@@ -1,0 +1,38 @@
+#!/bin/sh
+# suite.sh CONFIG-DIRECTORY: installs into a folder of its own and builds and runs small programs against what is there,
+# in C and C++, with the shared and with the static library. Looks, too, that the libraries show no name but theirs.
+set -eu
+build=$1
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+fail() { echo "install: $1" >&2; exit 1; }
+
+${MAKE:-make} -s install config="$(basename "$build")" prefix="$place" > "$place/log" 2>&1 || { cat "$place/log" >&2; exit 1; }
+"$place/bin/awtd" --version > /dev/null || fail 'awtd does not run'
+
+seen() { nm -g --defined-only "$@" | awk 'NF == 3 && $2 != "A" { sub(/@.*/, "", $3); print $3 }'; }
+for kind in a so; do
+    flag=$([ $kind = so ] && echo -D || echo -g)
+    others=$(seen "$flag" "$place/lib/libawtclient.$kind" | grep -vE '^(awt(client|link|frames|clock|pace|space|write)|proto)_' || true)
+    [ -z "$others" ] || fail "libawtclient.$kind shows $others"
+done
+
+# What pkg-config would say, where there is none.
+flags() {
+    if command -v pkg-config > /dev/null; then
+        PKG_CONFIG_PATH="$place/lib/pkgconfig" pkg-config --cflags --libs "$1"
+    else
+        sed -n 's/^\(Cflags\|Libs\): //p' "$place/lib/pkgconfig/$1.pc" | tr '\n' ' '
+    fi
+}
+for language in c c++; do
+    compiler=$([ $language = c ] && echo "${CC:-cc} -std=c17" || echo "${CXX:-c++} -std=c++17")
+    $compiler -x $language -Wall -Wextra -Werror -o "$place/shared" tests/install/engine.c $(flags awtclient)
+    LD_LIBRARY_PATH="$place/lib" "$place/shared" > /dev/null || fail "the $language program with the shared library"
+    $compiler -x $language -Wall -Wextra -Werror -I"$place/include/awt" -o "$place/static" tests/install/engine.c \
+        -x none "$place/lib/libawtclient.a" -lm
+    "$place/static" > /dev/null || fail "the $language program with the static library"
+done
+${CC:-cc} -std=c17 -o "$place/simulation" tests/install/simulation.c $(flags awt)
+LD_LIBRARY_PATH="$place/lib" "$place/simulation" > /dev/null || fail 'the program with libawt'
+echo 'install: programs, libraries and headers work where they were put, in C and C++'
