@@ -223,6 +223,27 @@ static inline lanes3 lanes3_orthogonal(lanes3 a)
 }
 
 /* LANES points x y z, one after the other. */
+static inline lanes3 lanes3_load(const float *from)
+{
+    const lanes p = lanes_load(from), q = lanes_load(from + LANES), r = lanes_load(from + 2 * (size_t)LANES);
+#if defined(__AVX__)
+    lanes a = __builtin_shufflevector(p, q, 0, 1, 2, 3, 12, 13, 14, 15);  /* x0 y0 z0 x1 x4 y4 z4 x5 */
+    lanes b = __builtin_shufflevector(p, r, 4, 5, 6, 7, 8, 9, 10, 11);    /* y1 z1 x2 y2 y5 z5 x6 y6 */
+    lanes c = __builtin_shufflevector(q, r, 0, 1, 2, 3, 12, 13, 14, 15);  /* z2 x3 y3 z3 z6 x7 y7 z7 */
+    lanes low = __builtin_shufflevector(b, c, 2, 3, 9, 10, 6, 7, 13, 14); /* x2 y2 x3 y3 .. */
+    lanes high = __builtin_shufflevector(a, b, 1, 2, 8, 9, 5, 6, 12, 13); /* y0 z0 y1 z1 .. */
+    return (lanes3){__builtin_shufflevector(a, low, 0, 3, 8, 10, 4, 7, 12, 14),
+                    __builtin_shufflevector(high, low, 0, 2, 9, 11, 4, 6, 13, 15),
+                    __builtin_shufflevector(high, c, 1, 3, 8, 11, 5, 7, 12, 15)};
+#else
+    lanes low = __builtin_shufflevector(q, r, 2, 3, 5, 6);  /* x2 y2 x3 y3 */
+    lanes high = __builtin_shufflevector(p, q, 1, 2, 4, 5); /* y0 z0 y1 z1 */
+    return (lanes3){__builtin_shufflevector(p, low, 0, 3, 4, 6), __builtin_shufflevector(high, low, 0, 2, 5, 7),
+                    __builtin_shufflevector(high, r, 1, 3, 4, 7)};
+#endif
+}
+
+/* The way back. */
 static inline void lanes3_store(float *to, lanes3 a)
 {
 #if defined(__AVX__)

@@ -1,6 +1,7 @@
 /* embed.c: see embed.h. */
 #include "sim/embed.h"
 
+#include "sim/hanging.h"
 #include "sim/relax.h"
 
 void embed_measure(awt_forest *f, const tree *t)
@@ -108,15 +109,27 @@ static bool quat_near(quat a, quat b)
            fabsf(a.z - sign * b.z) < EMBED_SETTLED_TURN && fabsf(a.w - sign * b.w) < EMBED_SETTLED_TURN;
 }
 
+/* The turn of what hangs on slot k, from the rest shape to the offsets as they were taken. */
+static quat rest_turn(const awt_forest *f, uint32_t k)
+{
+    return chord_turn(f, k, f->active_rest_chord[k], f->reference[f->active_node[k]]);
+}
+
+static bool radius_relax(awt_forest *f, uint32_t node, float share)
+{
+    float way = f->groom->rest_radius[node] - f->radius[node];
+    f->radius[node] += way * share;
+    return fabsf(way) < EMBED_SETTLED_M;
+}
+
 /* What hangs on slot k goes by `share` towards rest. True: all of it was near. */
 static bool embed_relax_slot(awt_forest *f, uint32_t k, float share)
 {
     const awt_groom *groom = f->groom;
     const uint32_t sections = groom->info.sections, node = f->active_node[k], i = node % sections;
-    quat turn = chord_turn(f, k, f->active_rest_chord[k], f->reference[node]);
+    quat turn = rest_turn(f, k);
     mat3 turned = mat3_of_quat(turn);
-    bool near = fabsf(groom->rest_radius[node] - f->radius[node]) < EMBED_SETTLED_M;
-    f->radius[node] += (groom->rest_radius[node] - f->radius[node]) * share;
+    bool near = radius_relax(f, node, share);
     uint32_t lo = node / sections, hi = lo + 1;
     while (groom_descend(groom, &lo, &hi)) {
         for (uint32_t s = lo; s < hi; s++) {
@@ -136,6 +149,25 @@ static bool embed_relax_slot(awt_forest *f, uint32_t k, float share)
     return near;
 }
 
+/* What hangs on the whole tree, likewise. */
+static bool embed_relax_tree(awt_forest *f, const tree *t, float share)
+{
+    bool near = true;
+    if (hanging_is_even(f, t)) {
+        quat turn[AWT_MAX_SECTIONS];
+        turn[0] = quat_identity(); /* the root's section stays */
+        for (uint32_t i = 1; i < t->count; i++) {
+            turn[i] = rest_turn(f, t->first + i);
+            near = radius_relax(f, f->active_node[t->first + i], share) && near;
+        }
+        return hanging_relax(f, t, turn, share) && near;
+    }
+    for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
+        near = embed_relax_slot(f, k, share) && near;
+    }
+    return near;
+}
+
 void embed_relax(awt_forest *f, tree *t, float dt_s)
 {
     if (f->params.offset_relaxation <= 0.0f || !t->loose) {
@@ -149,14 +181,8 @@ void embed_relax(awt_forest *f, tree *t, float dt_s)
     float share = relaxation_share(t->unrelaxed_s, f->params.offset_relaxation);
     t->unrelaxed_s = 0.0f;
     t->moved = f->sub_steps;
-    bool near = true;
-    for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
-        near = embed_relax_slot(f, k, share) && near;
-    }
-    if (near) {
-        for (uint32_t k = t->first + 1; k < t->first + t->count; k++) {
-            embed_relax_slot(f, k, 1.0f);
-        }
+    if (embed_relax_tree(f, t, share)) {
+        embed_relax_tree(f, t, 1.0f);
         t->loose = false;
     }
 }
