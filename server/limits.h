@@ -23,6 +23,7 @@ enum {
     LIMIT_IO_THREADS_PER_CORE = 4, /* unless --io-threads says otherwise */
     LIMIT_HOT_SET = 32,            /* busy connections of one I/O thread, before the next one gets any */
     LIMIT_HOT_NEWCOMERS = 128,     /* connections of an I/O thread that takes new ones; beyond, they begin as idle */
+    LIMIT_LOCK_TRIES = 200,        /* to get the service\'s lock, before a thread sleeps until it gets it */
     LIMIT_BACKLOG = 1024,          /* connections that wait for accept */
     LIMIT_ADMIN_CONNECTIONS = 16,  /* to the operator's address at once; the oldest makes room */
     LIMIT_ADMIN_REQUEST = 4096,    /* bytes of one request there */
