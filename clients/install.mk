@@ -48,6 +48,7 @@ prefix ?= /usr/local
 bindir ?= $(prefix)/bin
 libdir ?= $(prefix)/lib
 includedir ?= $(prefix)/include/awt
+mandir ?= $(prefix)/share/man
 
 define install_library
 	install -m 644 $(B)/lib/$(1).a $(B)/lib/$(1).so.$(VERSION) $(DESTDIR)$(libdir)
@@ -64,4 +65,7 @@ INSTALLED := $(B)/awtd $(B)/awtctl $(B)/awt-load $(B)/awt-bench
 install: programs libraries
 	install -d $(DESTDIR)$(bindir) $(DESTDIR)$(libdir)/pkgconfig $(DESTDIR)$(includedir)
 	install $(INSTALLED) $(DESTDIR)$(bindir)
+	install -d $(DESTDIR)$(mandir)/man1 $(DESTDIR)$(mandir)/man8
+	install -m 644 clients/awtctl.1 $(DESTDIR)$(mandir)/man1
+	install -m 644 server/awtd.8 $(DESTDIR)$(mandir)/man8
 	$(foreach l,$(LIBRARIES),$(call install_library,$(l)))

@@ -134,6 +134,9 @@ violence
 took "the most violent motion"
 all_bits
 took "same bits"
+suite "behind TLS" sh tests/tls.sh build/release
+suite "in a container" sh tests/container.sh
+took "TLS and container"
 fuzzer
 for target in strands hierarchy motion message snapshot frame json delta session; do
     fuzz "$target"
