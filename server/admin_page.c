@@ -1,5 +1,6 @@
 /* admin_page.c: see admin_page.h. */
 #include "admin_page.h"
+#include "clock.h"
 #include "health.h"
 #include "http.h"
 #include "metrics_text.h"
@@ -16,7 +17,7 @@ static int write_page(const char *path, FILE *to)
         return 200;
     }
     if (strcmp(path, "/readyz") == 0) {
-        const char *unready = health_unready();
+        const char *unready = health_unready(clock_monotonic_us());
         fprintf(to, "%s\n", unready ? unready : "ready");
         return unready ? 503 : 200;
     }

@@ -97,6 +97,7 @@ enum { LIMIT_BUSY_RETRY_MS = 100, LIMIT_FULL_RETRY_MS = 2000 }; /* ERROR BUSY's 
 #define LIMIT_PROGRESS_US INT64_C(100000)        /* from one PROGRESS to the next */
 #define LIMIT_ACCEPT_PAUSE_US INT64_C(100000)    /* no accept for so long when descriptors have run out */
 #define LIMIT_STOP_FLUSH_US INT64_C(2000000)     /* after SIGTERM, for what is still unsent */
+#define LIMIT_OVERLOADED_US INT64_C(5000000)     /* that a look which found too many forests keeps others away */
 #define LIMIT_ADMIN_US INT64_C(5000000)          /* from accept to the answer's last byte, at the operator's address */
 
 /* Nanoseconds for each idle connection that pass before all of them are looked at again, so that the looking takes a

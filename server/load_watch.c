@@ -1,5 +1,6 @@
 /* load_watch.c: see load_watch.h. */
 #include "load_watch.h"
+#include "health.h"
 #include "limits.h"
 #include "log.h"
 #include "metrics.h"
@@ -48,6 +49,7 @@ static void look(service *shared, int64_t now_us)
     }
     free(list);
     tell(shared, &v);
+    health_set_overloaded(v.full, now_us);
     shared->load = v;
     shared->load_looked_us = now_us;
 }

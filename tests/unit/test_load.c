@@ -1,6 +1,7 @@
 /* test_load.c: what is lowered when there is too much to do, in which order, and when it rises again. */
 #include "server_fixture.h"
 #include "check.h"
+#include "health.h"
 #include "completions.h"
 
 #include <math.h>
@@ -154,9 +155,13 @@ TEST(server_under_load_lowers_rates_then_levels_then_takes_no_more_forests)
     const proto_message *refused = fake_expect(s.client, PROTO_ERROR);
     CHECK_INT(refused->as.error.code, PROTO_ERROR_BUSY);
     CHECK(refused->as.error.retry_after_ms > 0);
+    health_set_serving();
+    CHECK_TEXT(health_unready(fake_now_us), "overloaded");
+    CHECK(health_unready(fake_now_us + LIMIT_OVERLOADED_US) == NULL);
     for (int i = 0; i < 20; i++) {
         pass(&s, 0, 0, &level);
     }
+    CHECK(health_unready(fake_now_us) == NULL);
     CHECK(!s.shared.load.full && s.r->lowered.thin == 1);
     CHECK(pass(&s, 0, 0, &level) >= 45);
     CHECK_INT(level, 0);
