@@ -35,4 +35,5 @@ for language in c c++; do
 done
 ${CC:-cc} -std=c17 -o "$place/simulation" tests/install/simulation.c $(flags awt)
 LD_LIBRARY_PATH="$place/lib" "$place/simulation" > /dev/null || fail 'the program with libawt'
-echo 'install: programs, libraries and headers work where they were put, in C and C++'
+echo 'ok   programs, libraries and headers work where they were put, in C and C++'
+echo '1 passed, 0 failed, 0 skipped'
