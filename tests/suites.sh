@@ -37,6 +37,21 @@ build() {
     exit 1
 }
 
+# build_beside ARGUMENTS...: the same in the background, while suites run, for these leave much of the machine idle;
+# build_joined waits for it.
+build_beside() {
+    echo "== building $* beside what follows"
+    nice make --no-print-directory -j"$jobs" all tests-binary "$@" >build/make-beside.log 2>&1 &
+    beside=$!
+}
+
+build_joined() {
+    wait "$beside" && return
+    grep -v '^  [A-Z]* ' build/make-beside.log | tail -n 40
+    echo "0 passed, 1 failed"
+    exit 1
+}
+
 finish() {
     echo "everything: $log"
     echo "$passed passed, $failed failed, $skipped skipped"
