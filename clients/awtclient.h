@@ -1,6 +1,6 @@
 /* awtclient.h: the one header of libawtclient, for C and C++. It brings the others: links that never wait (awtlink.h),
- * frames to hair of any time (awtframes.h, awtpace.h), into an engine's memory (awtwrite.h) and axes (awtspace.h), clocks
- * and credit (awtclock.h), and the messages (proto.h).
+ * frames to hair of any time (awtframes.h, awtpace.h), into an engine's memory (awtwrite.h) and axes (awtspace.h),
+ * clocks and credit (awtclock.h), and the messages (proto.h).
  *
  * Here is talking to awtd by calls that wait: a link (awtlink.h, which holds options and errors, and is for
  * callers that cannot wait), and a poll until what is wanted has come. The codec (bytes in, messages out) is in codec.h

@@ -28,6 +28,25 @@ suite() {
     count build/suite.log
 }
 
+# shared NAME TESTS: the suite of a program that can share its tests among processes, by as many as there are processors.
+shared() {
+    echo "== $1"
+    n=0 processes=
+    while [ "$n" -lt "$jobs" ]; do
+        AWT_SHARE=$n/$jobs "$2" >build/suite-$n.log 2>&1 &
+        processes="$processes $!"
+        n=$((n + 1))
+    done
+    wait $processes
+    n=0
+    while [ "$n" -lt "$jobs" ]; do
+        cat build/suite-$n.log >>"$log"
+        grep -v '^ok  ' build/suite-$n.log | tail -n 60
+        count build/suite-$n.log
+        n=$((n + 1))
+    done
+}
+
 # build ARGUMENTS...: programs and tests of one configuration; a build that fails ends everything.
 build() {
     echo "== building $*"
