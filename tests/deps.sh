@@ -35,6 +35,10 @@ if [ "$1" = test ] || [ "$1" = soak ]; then
     want nlohmann-json3-dev has_header nlohmann/json.hpp
     want libclang-rt-dev has_clang_runtime
     want python3 has python3
+    want python3-numpy /usr/bin/python3 -c 'import numpy'
+    want python3-setuptools /usr/bin/python3 -c 'import setuptools'
+    want python3-pip /usr/bin/python3 -c 'import pip'
+    want python3-venv /usr/bin/python3 -c 'import venv, ensurepip'
     want gcc-mingw-w64-x86-64 has x86_64-w64-mingw32-gcc
 fi
 if [ "$1" = soak ]; then

@@ -11,6 +11,7 @@ shared "every test, gcc -O2" build/release/tests
 suite "awtctl's files before other glTF tools" sh tests/node/suite.sh build/release
 suite "what make install puts down" sh tests/install/suite.sh build/release
 suite "a client written from PROTOCOL.md alone" python3 -B tests/stranger/test_stranger.py build/release
+suite "the Python client" sh tests/python/suite.sh build/release
 suite "gateway and viewer, in a browser" sh tests/web/suite.sh build/release
 build_joined
 shared "every test, clang, ASan and UBSan" build/asan/tests
