@@ -1,11 +1,11 @@
 /* keeper.c: see keeper.h. */
 #include "keeper.h"
 #include "log.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -88,17 +88,6 @@ static void *keeper_main(void *argument)
     return NULL;
 }
 
-/* Signals are not this thread's. */
-static bool start(keeper *k)
-{
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    bool started = pthread_create(&k->thread, NULL, keeper_main, k) == 0;
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return started;
-}
-
 keeper *keeper_create(const vault *v, int64_t (*clock_us)(void))
 {
     keeper *k = calloc(1, sizeof *k);
@@ -117,7 +106,7 @@ keeper *keeper_create(const vault *v, int64_t (*clock_us)(void))
         free(k);
         return NULL;
     }
-    if (!start(k)) {
+    if (!thread_start(&k->thread, keeper_main, k)) {
         pthread_cond_destroy(&k->changed);
         pthread_mutex_destroy(&k->mutex);
         free(k);

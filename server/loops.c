@@ -1,6 +1,6 @@
 /* loops.c: see loops.h. */
 #include "loops.h"
-#include "threads.h"
+#include "thread.h"
 
 #include <stdlib.h>
 
@@ -16,7 +16,7 @@ static bool start_loop(loops *all, home *own)
     if (!loop_init(l, all->shared, &all->homes, own)) {
         return false;
     }
-    if (!threads_start(&all->threads[all->running], loop_main, l)) {
+    if (!thread_start(&all->threads[all->running], loop_main, l)) {
         loop_fini(l);
         return false;
     }

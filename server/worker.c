@@ -4,7 +4,7 @@
  * they are called, so that a job that becomes due wakes one thread and not all of them. */
 #include "worker.h"
 #include "base/assert.h"
-#include "threads.h"
+#include "thread.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -153,7 +153,7 @@ static bool start_threads(worker_pool *pool)
     while (started && pool->started < count) {
         worker *w = &pool->threads[pool->started];
         *w = (worker){.pool = pool, .number = pool->started + 1};
-        started = threads_start(&w->thread, w->number > pool->def.workers ? builder_main : worker_main, w);
+        started = thread_start(&w->thread, w->number > pool->def.workers ? builder_main : worker_main, w);
         pool->started += started;
     }
     return started;
