@@ -135,14 +135,14 @@ static void accept_visits(admin *a)
     }
 }
 
-/* Milliseconds until the oldest connection's time is over; -1: there is none. */
-static int sleep_ms(const admin *a, int64_t now_us)
+/* When the oldest connection's time is over, or there may be accepted again; INT64_MAX: neither. */
+static int64_t due_us(const admin *a, int64_t now_us)
 {
     int64_t until_us = a->count ? a->visits[0]->deadline_us : INT64_MAX;
     if (a->accept_from_us > now_us && a->accept_from_us < until_us) {
         until_us = a->accept_from_us;
     }
-    return until_us == INT64_MAX ? -1 : until_us <= now_us ? 0 : (int)((until_us - now_us + 999) / 1000);
+    return until_us;
 }
 
 static void turn(admin *a)
@@ -157,7 +157,7 @@ static void turn(admin *a)
         const int events = (v->ended ? 0 : POLLIN) | (is_answering(v) ? POLLOUT : 0);
         slots[SLOT_VISITS + i] = (struct pollfd){.fd = v->fd, .events = (short)events};
     }
-    if (poll(slots, SLOT_VISITS + count, sleep_ms(a, now_us)) < 0) {
+    if (poll(slots, SLOT_VISITS + count, clock_poll_ms(now_us, due_us(a, now_us))) < 0) {
         return; /* EINTR, or no memory for a moment */
     }
     for (size_t i = count; i-- > 0;) {

@@ -3,11 +3,22 @@
 
 #include <time.h>
 
+enum { LONGEST_POLL_US = 60000000 };
+
 int64_t clock_monotonic_us(void)
 {
     struct timespec now = {0};
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+int clock_poll_ms(int64_t now_us, int64_t until_us)
+{
+    if (until_us == INT64_MAX) {
+        return -1;
+    }
+    int64_t left_us = until_us - now_us;
+    return left_us <= 0 ? 0 : left_us >= LONGEST_POLL_US ? LONGEST_POLL_US / 1000 : (int)((left_us + 999) / 1000);
 }
 
 uint32_t clock_between_us(int64_t from_us, int64_t to_us)

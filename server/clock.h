@@ -7,6 +7,10 @@
 /* Microseconds since some fixed moment. Any thread. */
 int64_t clock_monotonic_us(void);
 
+/* Milliseconds that poll may sleep until then, at most a minute (whoever wakes too early sleeps again); INT64_MAX: -1,
+ * as long as nothing happens. */
+int clock_poll_ms(int64_t now_us, int64_t until_us);
+
 /* The time between two readings as the wire's u32 wants it: 0 .. UINT32_MAX. */
 uint32_t clock_between_us(int64_t from_us, int64_t to_us);
 

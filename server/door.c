@@ -1,5 +1,6 @@
 /* door.c: see door.h. */
 #include "door.h"
+#include "clock.h"
 #include "log.h"
 #include "net.h"
 #include "upkeep.h"
@@ -66,12 +67,6 @@ static bool may_accept(door *d, int64_t now_us)
 
 /* ---- turns ------------------------------------------------------------------------------------------------------- */
 
-static int sleep_ms(int64_t now_us, int64_t until_us)
-{
-    int64_t left_us = until_us - now_us;
-    return until_us == INT64_MAX ? -1 : left_us <= 0 ? 0 : (int)((left_us + 999) / 1000);
-}
-
 /* Does what is due; when something is due next. */
 static int64_t keep_up(door *d, int64_t now_us)
 {
@@ -94,7 +89,7 @@ static void turn(door *d)
     }
     struct pollfd polled[SLOTS] = {{.fd = d->own.bell.ends[0], .events = POLLIN},
                                    {.fd = open ? d->listener : -1, .events = POLLIN}};
-    if (poll(polled, SLOTS, sleep_ms(now_us, due_us)) <= 0) {
+    if (poll(polled, SLOTS, clock_poll_ms(now_us, due_us)) <= 0) {
         return;
     }
     if (polled[SLOT_BELL].revents) {

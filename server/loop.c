@@ -1,5 +1,6 @@
 /* loop.c: see loop.h. */
 #include "loop.h"
+#include "clock.h"
 #include "log.h"
 
 #include <stdlib.h>
@@ -178,16 +179,6 @@ static void give_due_turns(loop *l)
 
 /* ---- sleeping ---------------------------------------------------------------------------------------------------- */
 
-/* Milliseconds that poll may sleep; -1: as long as nothing happens. */
-static int sleep_ms(int64_t now_us, int64_t until_us)
-{
-    if (until_us == INT64_MAX) {
-        return -1;
-    }
-    int64_t left_us = until_us - now_us;
-    return left_us <= 0 ? 0 : left_us >= 60000000 ? 60000 : (int)((left_us + 999) / 1000);
-}
-
 /* The time at which there is something to do whatever poll says. */
 static int64_t next_due_us(const loop *l, int64_t until_us)
 {
@@ -226,7 +217,7 @@ static int look(loop *l, int64_t until_us)
     if (!sockets && l->look_from_us < due_us) {
         due_us = l->look_from_us;
     }
-    const int patience_ms = fall_asleep(l) ? sleep_ms(now_us, due_us) : 0;
+    const int patience_ms = fall_asleep(l) ? clock_poll_ms(now_us, due_us) : 0;
     int ready = poll(l->polled, 1 + (sockets ? l->count : 0), patience_ms);
     if (ready <= 0) { /* EINTR, or no memory for a moment: nobody has anything to say */
         return 0;

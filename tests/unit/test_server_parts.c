@@ -1,5 +1,6 @@
 /* test_server_parts.c: the small parts of the daemon: handles, input, output, log text. */
 #include "check.h"
+#include "clock.h"
 #include "handles.h"
 #include "input.h"
 #include "limits.h"
@@ -242,4 +243,15 @@ TEST(server_log_text_cannot_forge_a_line)
     memset(longest, 1, sizeof longest);
     CHECK(strlen(log_quote(longest, sizeof longest, out)) < LOG_QUOTED);
     CHECK(out[strlen(out) - 1] == '"');
+}
+
+TEST(server_sleeps_a_minute_at_most_where_something_is_due_in_a_year)
+{
+    const int64_t now_us = 5000000, year_us = INT64_C(31536000) * 1000000;
+    CHECK_INT(clock_poll_ms(now_us, INT64_MAX), -1);
+    CHECK_INT(clock_poll_ms(now_us, now_us - 1), 0);
+    CHECK_INT(clock_poll_ms(now_us, now_us), 0);
+    CHECK_INT(clock_poll_ms(now_us, now_us + 1), 1); /* never too early */
+    CHECK_INT(clock_poll_ms(now_us, now_us + 2500), 3);
+    CHECK_INT(clock_poll_ms(now_us, now_us + year_us), 60000); /* in an int of milliseconds it would be negative */
 }
