@@ -13,18 +13,14 @@ awt_status forest_state_show(forest_work *w, awt_error *error)
     if (status == AWT_OK && size > GEOM_MAX_GLB) {
         return error_set(error, AWT_LIMIT, "the snapshot has %zu bytes; a message takes %d", size, GEOM_MAX_GLB);
     }
-    picture *out = status == AWT_OK ? picture_create() : NULL;
+    picture *out = status == AWT_OK ? picture_of_bytes(PICTURE_STATE, size) : NULL;
     if (!out) {
         return status == AWT_OK ? error_set(error, AWT_NO_MEMORY, NULL) : status;
     }
-    view *v = picture_add(out, (view_name){.form = PICTURE_STATE});
     out->figures.forest = w->handle;
     out->figures.time_us = awt_forest_time(w->forest);
     out->state_hash = awt_forest_hash(w->forest);
-    v->glb.bytes = malloc(size);
-    v->glb.capacity = v->glb.size = size;
-    status = v->glb.bytes ? awt_forest_snapshot(w->forest, v->glb.bytes, size, &size, error)
-                          : error_set(error, AWT_NO_MEMORY, NULL);
+    status = awt_forest_snapshot(w->forest, out->views[0].glb.bytes, size, &size, error);
     if (status != AWT_OK) {
         picture_release(out);
         return status;

@@ -171,16 +171,12 @@ static awt_status draw_binding(forest_work *w, awt_error *error)
     if (status == AWT_OK && size > GEOM_MAX_GLB) {
         status = error_set(error, AWT_LIMIT, "the binding has %zu bytes; a message takes %d", size, GEOM_MAX_GLB);
     }
-    picture *out = status == AWT_OK ? picture_create() : NULL;
+    picture *out = status == AWT_OK ? picture_of_bytes(PICTURE_BINDING, size) : NULL;
     if (!out) {
         return status == AWT_OK ? error_set(error, AWT_NO_MEMORY, NULL) : status;
     }
-    view *v = picture_add(out, (view_name){.form = PICTURE_BINDING});
     out->figures.forest = w->handle;
-    v->glb.bytes = malloc(size);
-    v->glb.capacity = v->glb.size = size;
-    status = v->glb.bytes ? geom_binding_write(w->groom, v->glb.bytes, size, &size, error)
-                          : error_set(error, AWT_NO_MEMORY, NULL);
+    status = geom_binding_write(w->groom, out->views[0].glb.bytes, size, &size, error);
     if (status != AWT_OK) {
         picture_release(out);
         return status;

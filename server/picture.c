@@ -14,6 +14,22 @@ picture *picture_create(void)
     return p;
 }
 
+picture *picture_of_bytes(int form, size_t size)
+{
+    picture *p = picture_create();
+    view *v = p ? picture_add(p, (view_name){.form = form}) : NULL;
+    if (!v) {
+        return NULL;
+    }
+    v->glb.bytes = malloc(size);
+    if (!v->glb.bytes) {
+        picture_release(p);
+        return NULL;
+    }
+    v->glb.capacity = v->glb.size = size;
+    return p;
+}
+
 picture *picture_hold(picture *p)
 {
     atomic_fetch_add(&p->references, 1);

@@ -46,6 +46,8 @@ typedef struct picture {
 
 /* An empty picture with one reference; the maker fills it before anyone else sees it. NULL: no memory. */
 picture *picture_create(void);
+/* The same with one view already, `views[0]`, whose `size` bytes are still to be filled: a binding, or a state. */
+picture *picture_of_bytes(int form, size_t size);
 /* One reference more; returns `p`. Any thread. */
 picture *picture_hold(picture *p);
 /* One reference less. Any thread. Accepts NULL. */
