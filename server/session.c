@@ -153,6 +153,18 @@ bool session_attach(session *s, uint16_t about, uint64_t request, resident *r, b
     }
 }
 
+bool session_make(session *s, const proto_message *message, recipe *making)
+{
+    const origin from = {.session = s->handle, .request = message->request};
+    awt_error error = {0};
+    if (registry_create(&s->shared->forests, making, from, s->shared->options.clock_us(), &error) != AWT_OK) {
+        session_error_awt(s, message->type, message->request, &error);
+        return false;
+    }
+    s->pending++;
+    return true;
+}
+
 void session_detach(session *s, uint64_t forest)
 {
     holdings_close(&s->holds, &s->shared->forests, forest, s->shared->options.clock_us());

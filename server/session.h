@@ -100,6 +100,9 @@ void session_detach(session *s, uint64_t forest);
 /* The forest that the message names, if the session may use it so; NULL: an ERROR was sent. */
 resident *session_resident(session *s, const proto_message *message, uint64_t forest, bool to_drive);
 
+/* Has the forest of a recipe (taken) made; CREATE_REPLY, or ERROR, follows when it is. False: an ERROR was sent. */
+bool session_make(session *s, const proto_message *message, recipe *making);
+
 /* The complete upload of that number; NULL: there is none. */
 upload *session_complete_upload(session *s, uint32_t number);
 

@@ -30,17 +30,9 @@ void session_create(session *s, const proto_message *message)
                       "the forests here are more than the workers can keep up with");
         return;
     }
-    awt_status status = recipe_create(create, file, hierarchy, &making, &error);
-    if (status == AWT_OK) {
-        origin from = {.session = s->handle, .request = message->request};
-        status = registry_create(&s->shared->forests, making, from, s->shared->options.clock_us(), &error);
-    }
-    if (status != AWT_OK) {
+    if (recipe_create(create, file, hierarchy, &making, &error) != AWT_OK) {
         session_error_awt(s, message->type, message->request, &error);
-        return;
-    }
-    s->pending++;
-    if (create->progress) {
+    } else if (session_make(s, message, making) && create->progress) {
         service_ring_door(s->shared);
     }
 }

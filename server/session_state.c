@@ -20,14 +20,9 @@ void session_restore(session *s, const proto_message *message)
                       (unsigned long)restore->upload);
         return;
     }
-    awt_status status = recipe_restore(state, 0, restore->name, &making, &error);
-    if (status == AWT_OK) {
-        origin from = {.session = s->handle, .request = message->request};
-        status = registry_create(&s->shared->forests, making, from, s->shared->options.clock_us(), &error);
-    }
-    if (status != AWT_OK) {
+    if (recipe_restore(state, 0, restore->name, &making, &error) != AWT_OK) {
         session_error_awt(s, message->type, message->request, &error);
-        return;
+    } else {
+        session_make(s, message, making);
     }
-    s->pending++;
 }

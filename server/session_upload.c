@@ -106,10 +106,6 @@ void session_upload(session *s, const proto_message *message)
 
 upload *session_complete_upload(session *s, uint32_t number)
 {
-    for (uint32_t i = 0; i < LIMIT_SESSION_UPLOADS; i++) {
-        if (s->holds.uploads[i] && s->holds.uploads[i]->number == number && s->holds.uploads[i]->complete) {
-            return s->holds.uploads[i];
-        }
-    }
-    return NULL;
+    upload **place = upload_place(s, number);
+    return place && (*place)->complete ? *place : NULL;
 }
