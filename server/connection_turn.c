@@ -76,30 +76,14 @@ static void note_activity(connection *c, uint16_t type)
 /* Does what whole messages ask, a bounded number of them. */
 static void process(connection *c)
 {
-    proto_header header;
-    const unsigned char *payload = NULL;
     for (int n = 0; n < LIMIT_TURN_MESSAGES && !connection_is_discarding(c) && !connection_is_paused(c) && !c->over;
          n++) {
-        switch (input_next(&c->in, &header, &payload)) {
-        case INPUT_MORE:
+        uint16_t done = 0;
+        if (!protocol_step(&c->talk, &c->in, &done)) {
             return;
-        case INPUT_HEADER:
-            switch (protocol_judge(&c->talk, &header)) {
-            case PROTOCOL_TAKE:
-                input_take(&c->in, &header);
-                break;
-            case PROTOCOL_SKIP:
-                input_skip(&c->in, &header);
-                break;
-            case PROTOCOL_REFUSE:
-                return;
-            }
-            break;
-        case INPUT_MESSAGE:
-            note_activity(c, header.type);
-            protocol_receive(&c->talk, &header, payload);
-            input_done(&c->in);
-            break;
+        }
+        if (done != 0) {
+            note_activity(c, done);
         }
     }
 }

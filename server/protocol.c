@@ -103,3 +103,32 @@ void protocol_receive(session *s, const proto_header *header, const unsigned cha
     const struct rule *rule = rule_of(header->type);
     rule->handler(s, &message);
 }
+
+bool protocol_step(session *s, input *in, uint16_t *done)
+{
+    proto_header header;
+    const unsigned char *payload = NULL;
+    *done = 0;
+    switch (input_next(in, &header, &payload)) {
+    case INPUT_MORE:
+        return false;
+    case INPUT_HEADER:
+        switch (protocol_judge(s, &header)) {
+        case PROTOCOL_TAKE:
+            input_take(in, &header);
+            return true;
+        case PROTOCOL_SKIP:
+            input_skip(in, &header);
+            return true;
+        case PROTOCOL_REFUSE:
+            return false;
+        }
+        return false;
+    case INPUT_MESSAGE:
+        *done = header.type;
+        protocol_receive(s, &header, payload);
+        input_done(in);
+        return true;
+    }
+    return false;
+}

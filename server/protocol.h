@@ -3,6 +3,7 @@
 #ifndef PROTOCOL_H
 #define PROTOCOL_H
 
+#include "input.h"
 #include "session.h"
 
 typedef enum protocol_verdict {
@@ -16,5 +17,9 @@ protocol_verdict protocol_judge(session *s, const proto_header *header);
 
 /* Decodes a payload whose header was PROTOCOL_TAKE, and does what it asks. */
 void protocol_receive(session *s, const proto_header *header, const unsigned char *payload);
+
+/* Does the next thing with what has come: judges a header, or carries out a whole message; *done is that one's type, 0
+ * where it was a header. False: bytes must come first, or the session is closing. */
+bool protocol_step(session *s, input *in, uint16_t *done);
 
 #endif

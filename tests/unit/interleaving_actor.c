@@ -179,29 +179,9 @@ void actor_congest(actor *who, bool congested)
 /* As a connection does with what has come. */
 static void process(actor *who)
 {
-    proto_header header;
-    const unsigned char *payload = NULL;
-    while (who->talk.state != SESSION_CLOSING && who->talk.pending < LIMIT_SESSION_PENDING) {
-        switch (input_next(&who->in, &header, &payload)) {
-        case INPUT_MORE:
-            return;
-        case INPUT_HEADER:
-            switch (protocol_judge(&who->talk, &header)) {
-            case PROTOCOL_TAKE:
-                input_take(&who->in, &header);
-                break;
-            case PROTOCOL_SKIP:
-                input_skip(&who->in, &header);
-                break;
-            case PROTOCOL_REFUSE:
-                return;
-            }
-            break;
-        case INPUT_MESSAGE:
-            protocol_receive(&who->talk, &header, payload);
-            input_done(&who->in);
-            break;
-        }
+    uint16_t done = 0;
+    while (who->talk.state != SESSION_CLOSING && who->talk.pending < LIMIT_SESSION_PENDING &&
+           protocol_step(&who->talk, &who->in, &done)) {
     }
 }
 
