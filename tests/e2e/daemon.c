@@ -4,7 +4,6 @@
 #include "base/options.h"
 #include "check.h"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <netdb.h>
 #include <signal.h>
@@ -94,10 +93,7 @@ static bool spawn(const char *const *all, pid_t *pid, char *address, char *admin
 bool daemon_start(daemon_process *daemon, int workers, const char *const *arguments)
 {
     memset(daemon, 0, sizeof *daemon);
-    snprintf(daemon->state_directory, sizeof daemon->state_directory, "/tmp/awtd-test-XXXXXX");
-    if (!mkdtemp(daemon->state_directory)) {
-        return false;
-    }
+    folder_make(daemon->state_directory);
     snprintf(daemon->token_file, sizeof daemon->token_file, "%s/token", daemon->state_directory);
     return daemon_start_again(daemon, workers, arguments);
 }
@@ -157,27 +153,9 @@ int daemon_end(daemon_process *daemon)
     return result;
 }
 
-static void empty(const char *folder)
-{
-    DIR *files = opendir(folder);
-    for (struct dirent *entry; files && (entry = readdir(files)) != NULL;) {
-        char path[512];
-        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        unlink(path); /* fails for the folder itself and the one above */
-    }
-    if (files) {
-        closedir(files);
-    }
-}
-
 void daemon_forget(daemon_process *daemon)
 {
-    char forests[96];
-    snprintf(forests, sizeof forests, "%s/forests", daemon->state_directory);
-    empty(forests);
-    rmdir(forests);
-    unlink(daemon->token_file);
-    rmdir(daemon->state_directory);
+    folder_remove(daemon->state_directory);
 }
 
 int daemon_stop(daemon_process *daemon)

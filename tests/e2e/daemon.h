@@ -4,6 +4,7 @@
 #define E2E_DAEMON_H
 
 #include "awtclient.h"
+#include "unit/folder_fixture.h"
 
 #include <sys/types.h>
 
@@ -11,7 +12,7 @@ typedef struct daemon_process {
     pid_t pid;
     char address[128];
     char admin[128]; /* where it answers HTTP; empty: nowhere */
-    char state_directory[64];
+    char state_directory[FOLDER_PATH];
     char token_file[96];
 } daemon_process;
 

@@ -131,8 +131,8 @@ static bool log_comes_to(const char *path, const char *text)
 TEST(e2e_settings_are_read_again_whole_or_not_at_all)
 {
     daemon_process daemon;
-    char folder[] = "/tmp/awtd-test-XXXXXX", path[64], log[64];
-    CHECK(mkdtemp(folder) != NULL);
+    char folder[FOLDER_PATH], path[FOLDER_PATH + 16], log[FOLDER_PATH + 16];
+    folder_make(folder);
     snprintf(path, sizeof path, "%s/awtd.conf", folder);
     snprintf(log, sizeof log, "%s/log", folder);
     write_settings(path, "max-forests = 8\nlog-level = info\n");
@@ -155,9 +155,7 @@ TEST(e2e_settings_are_read_again_whole_or_not_at_all)
     CHECK(log_comes_to(log, "awtd.conf:2: "));
     CHECK_INT(daemon_stop(&daemon), 0);
     CHECK(log_comes_to(log, "\"msg\":\"stopped\"")); /* still JSON: nothing of what was refused holds */
-    unlink(path);
-    unlink(log);
-    rmdir(folder);
+    folder_remove(folder);
 }
 
 /* The exit code of awtd with that argument and --check. */

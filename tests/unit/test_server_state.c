@@ -2,6 +2,7 @@
 #include "server_fixture.h"
 #include "base/crc32c.h"
 #include "check.h"
+#include "folder_fixture.h"
 #include "restore.h"
 #include "upkeep.h"
 
@@ -52,19 +53,6 @@ static void keep_round(kept_service *k)
     fake_work(&k->shared, NULL);
     CHECK(upkeep_kept_all(&k->shared));
     CHECK(keeper_drain(k->keeper));
-}
-
-static void make_state(char path[64])
-{
-    snprintf(path, 64, "/tmp/awtd-state-XXXXXX");
-    CHECK(mkdtemp(path) != NULL);
-}
-
-static void remove_state(const char *path)
-{
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", path);
-    CHECK_INT(system(command), 0);
 }
 
 /* ---- clients ----------------------------------------------------------------------------------------------------- */
@@ -187,9 +175,9 @@ TEST(server_snapshot_is_for_who_may_drive)
 
 TEST(server_started_anew_has_its_forests_and_they_go_on_to_the_bit)
 {
-    char state[64];
+    char state[FOLDER_PATH];
     kept_service first = {0}, second = {0};
-    make_state(state);
+    folder_make(state);
     begin(&first, state);
     fake_client *client = fake_client_open(&first.shared);
     const struct proto_create_reply made = fake_make_forest(&first.shared, client, 5);
@@ -210,15 +198,15 @@ TEST(server_started_anew_has_its_forests_and_they_go_on_to_the_bit)
     CHECK(other.forest != made.forest);
     fake_client_destroy(client);
     end(&second);
-    remove_state(state);
+    folder_remove(state);
 }
 
 TEST(server_brings_to_the_disk_what_changed_and_removes_what_ended)
 {
-    char state[64];
+    char state[FOLDER_PATH];
     kept_service k = {0};
     size_t size = 0;
-    make_state(state);
+    folder_make(state);
     begin(&k, state);
     fake_client *client = fake_client_open(&k.shared);
     const uint64_t moved = fake_make_forest(&k.shared, client, 5).forest,
@@ -243,15 +231,15 @@ TEST(server_brings_to_the_disk_what_changed_and_removes_what_ended)
     keep_round(&k); /* nothing has changed since it was read */
     CHECK_U64(keeper_count(k.keeper).written, 0);
     end(&k);
-    remove_state(state);
+    folder_remove(state);
 }
 
 TEST(server_starts_without_the_forests_whose_files_are_damaged)
 {
-    char state[64];
+    char state[FOLDER_PATH];
     kept_service k = {0};
     size_t size = 0;
-    make_state(state);
+    folder_make(state);
     begin(&k, state);
     fake_client *client = fake_client_open(&k.shared);
     const uint64_t good = fake_make_forest(&k.shared, client, 5).forest,
@@ -271,5 +259,5 @@ TEST(server_starts_without_the_forests_whose_files_are_damaged)
     CHECK(registry_find(&k.shared.forests, good) != NULL);
     CHECK(!vault_read(&k.place, bad, &size)); /* set aside, for people */
     end(&k);
-    remove_state(state);
+    folder_remove(state);
 }

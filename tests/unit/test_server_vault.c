@@ -1,5 +1,6 @@
 /* test_server_vault.c: files of the state directory: whole or not at all, whoever may be in the way. */
 #include "check.h"
+#include "folder_fixture.h"
 #include "keeper.h"
 #include "log.h"
 #include "saved.h"
@@ -12,20 +13,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-/* A state directory of the test's own; removed with what is in it by remove_state. */
-static void make_state(char path[64])
-{
-    snprintf(path, 64, "/tmp/awtd-vault-XXXXXX");
-    CHECK(mkdtemp(path) != NULL);
-}
-
-static void remove_state(const char *path)
-{
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", path);
-    CHECK_INT(system(command), 0);
-}
 
 static bool open_vault(vault *v, const char *state)
 {
@@ -57,10 +44,10 @@ static counted count_files(const vault *v)
 
 TEST(vault_files_are_read_as_they_were_written_and_replaced)
 {
-    char state[64];
+    char state[FOLDER_PATH];
     vault v;
     size_t size = 0;
-    make_state(state);
+    folder_make(state);
     CHECK(open_vault(&v, state));
     CHECK(vault_write(&v, 0x100000001, "first", 5) && vault_write(&v, 7, "other", 5));
     CHECK(vault_write(&v, 0x100000001, "second one", 10));
@@ -76,14 +63,14 @@ TEST(vault_files_are_read_as_they_were_written_and_replaced)
     CHECK_INT(count_files(&v).count, 0);
     CHECK(!vault_read(&v, 7, &size));
     CHECK_INT(errno, ENOENT);
-    remove_state(state);
+    folder_remove(state);
 }
 
 TEST(vault_removes_what_was_half_written_and_passes_over_strangers)
 {
-    char state[64], path[LIMIT_PATH + 64];
+    char state[FOLDER_PATH], path[LIMIT_PATH + 64];
     vault v;
-    make_state(state);
+    folder_make(state);
     CHECK(open_vault(&v, state) && vault_write(&v, 5, "whole", 5));
     static const char *const others[] = {"0000000000000006.part", "notes.txt", "zz00000000000007.forest", "8.forest"};
     for (int i = 0; i < 4; i++) {
@@ -98,28 +85,28 @@ TEST(vault_removes_what_was_half_written_and_passes_over_strangers)
     CHECK(access(path, F_OK) != 0);
     snprintf(path, sizeof path, "%s/%s", v.folder, others[1]);
     CHECK(access(path, F_OK) == 0); /* not ours to remove */
-    remove_state(state);
+    folder_remove(state);
 }
 
 TEST(vault_that_cannot_be_made_says_so)
 {
-    char state[64], error[256] = "";
+    char state[FOLDER_PATH], error[256] = "";
     vault v;
-    make_state(state);
+    folder_make(state);
     char path[96];
     snprintf(path, sizeof path, "%s/forests", state);
     close(open(path, O_WRONLY | O_CREAT, 0600)); /* a file stands where the folder should */
     CHECK(!vault_open(&v, state, error, sizeof error));
     CHECK(strstr(error, "/forests cannot be") != NULL);
-    remove_state(state);
+    folder_remove(state);
 }
 
 TEST(vault_keeps_the_old_file_where_the_new_one_cannot_be_written)
 {
-    char state[64], beside[LIMIT_PATH + 64];
+    char state[FOLDER_PATH], beside[LIMIT_PATH + 64];
     vault v;
     size_t size = 0;
-    make_state(state);
+    folder_make(state);
     CHECK(open_vault(&v, state) && vault_write(&v, 5, "old", 3));
     snprintf(beside, sizeof beside, "%s/0000000000000005.part", v.folder);
     CHECK_INT(mkdir(beside, 0700), 0); /* nothing can be written there */
@@ -127,7 +114,7 @@ TEST(vault_keeps_the_old_file_where_the_new_one_cannot_be_written)
     unsigned char *bytes = vault_read(&v, 5, &size);
     CHECK_BYTES(bytes, "old", 3);
     free(bytes);
-    remove_state(state);
+    folder_remove(state);
 }
 
 /* ---- the keeper -------------------------------------------------------------------------------------------------- */
@@ -147,10 +134,10 @@ static unsigned char *heap_copy(const char *text)
 
 TEST(keeper_writes_the_newest_of_each_forest_and_removes)
 {
-    char state[64], text[32];
+    char state[FOLDER_PATH], text[32];
     vault v;
     size_t size = 0;
-    make_state(state);
+    folder_make(state);
     CHECK(open_vault(&v, state));
     keeper *k = keeper_create(&v, no_time_us);
     CHECK(k != NULL);
@@ -171,14 +158,14 @@ TEST(keeper_writes_the_newest_of_each_forest_and_removes)
     bytes = vault_read(&v, 9, &size);
     CHECK_BYTES(bytes, "last", 4);
     free(bytes);
-    remove_state(state);
+    folder_remove(state);
 }
 
 TEST(keeper_reports_what_could_not_be_written_and_goes_on)
 {
-    char state[64], beside[LIMIT_PATH + 64];
+    char state[FOLDER_PATH], beside[LIMIT_PATH + 64];
     vault v;
-    make_state(state);
+    folder_make(state);
     log_set_level(LOG_ERROR);
     CHECK(open_vault(&v, state));
     snprintf(beside, sizeof beside, "%s/0000000000000005.part", v.folder);
@@ -190,14 +177,14 @@ TEST(keeper_reports_what_could_not_be_written_and_goes_on)
     CHECK_U64(keeper_count(k).written, 1);
     CHECK(keeper_drain(k)); /* said once */
     keeper_destroy(k);
-    remove_state(state);
+    folder_remove(state);
 }
 
 TEST(keeper_refuses_more_than_may_wait)
 {
-    char state[64];
+    char state[FOLDER_PATH];
     vault v;
-    make_state(state);
+    folder_make(state);
     CHECK(open_vault(&v, state));
     keeper *k = keeper_create(&v, no_time_us);
     CHECK(!keeper_write(k, 5, heap_copy("x"), (size_t)LIMIT_KEEPER_BYTES + 1)); /* judged by its size alone */
@@ -205,7 +192,7 @@ TEST(keeper_refuses_more_than_may_wait)
     CHECK(keeper_drain(k));
     keeper_destroy(k);
     CHECK_INT(count_files(&v).count, 0);
-    remove_state(state);
+    folder_remove(state);
 }
 
 /* ---- saved forests ----------------------------------------------------------------------------------------------- */
