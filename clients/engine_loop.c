@@ -442,20 +442,10 @@ int main(int argc, char **argv)
     };
     const option_program program = {"engine_loop", "a game's loop with hair from awtd, measured", NULL, options,
                                     sizeof options / sizeof options[0]};
-    char error[160];
     size_t operands;
-    switch (options_parse(&program, argc - 1, argv + 1, NULL, 0, &operands, error, sizeof error)) {
-    case OPTIONS_RUN:
-        break;
-    case OPTIONS_HELP:
-        options_help(&program, stdout);
-        return 0;
-    case OPTIONS_VERSION:
-        puts("engine_loop " AWTD_VERSION);
-        return 0;
-    case OPTIONS_WRONG:
-        fprintf(stderr, "engine_loop: %s\n", error);
-        return 2;
+    int code;
+    if (!options_begin(&program, argc - 1, argv + 1, NULL, 0, &operands, &code)) {
+        return code;
     }
     static loop l;
     l.plan = &plan;

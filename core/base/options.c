@@ -1,5 +1,6 @@
 /* options.c: see options.h. */
 #include "base/options.h"
+#include "base/version.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -152,6 +153,28 @@ void options_help(const option_program *program, FILE *file)
         option_help_line(&program->options[i], file);
     }
     fprintf(file, "  %-26s %s\n  %-26s %s\n", "--help", "this text", "--version", "the version");
+}
+
+bool options_begin(const option_program *program, int count, char *const *arguments, const char **operands,
+                   size_t operand_max, size_t *operand_count, int *code)
+{
+    char error[160];
+    *code = 0;
+    switch (options_parse(program, count, arguments, operands, operand_max, operand_count, error, sizeof error)) {
+    case OPTIONS_RUN:
+        return true;
+    case OPTIONS_HELP:
+        options_help(program, stdout);
+        break;
+    case OPTIONS_VERSION: /* of the program, not of its subcommand */
+        printf("%.*s %s\n", (int)strcspn(program->name, " "), program->name, AWTD_VERSION);
+        break;
+    case OPTIONS_WRONG:
+        fprintf(stderr, "%s: %s\n", program->name, error);
+        *code = 2;
+        break;
+    }
+    return false;
 }
 
 bool options_split_assignment(const char *text, char *name, size_t name_size, double *value)

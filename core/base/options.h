@@ -48,6 +48,11 @@ typedef enum option_result { OPTIONS_RUN, OPTIONS_HELP, OPTIONS_VERSION, OPTIONS
 option_result options_parse(const option_program *program, int count, char *const *arguments, const char **operands,
                             size_t operand_max, size_t *operand_count, char *error, size_t error_size);
 
+/* What a program begins with: options_parse; --help and --version print to standard output what was asked, what is
+ * wrong goes to standard error. False: the program ends with *code, 0 or 2. */
+bool options_begin(const option_program *program, int count, char *const *arguments, const char **operands,
+                   size_t operand_max, size_t *operand_count, int *code);
+
 /* The option of that name (of `length` bytes); NULL: there is none. */
 const option *options_find(const option_program *program, const char *name, size_t length);
 /* Sets it from `text`, which a text's value points to then. False: `error` says why it cannot be that. */

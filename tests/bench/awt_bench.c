@@ -17,28 +17,6 @@ static const struct {
     {"soak", bench_soak, "minutes of the most violent motion, checked: no NaN, no growth, rest at the end"},
 };
 
-bool bench_options(const option_program *program, int argc, char *const *argv, const char **operands,
-                   size_t operand_max, size_t *operand_count, int *code)
-{
-    char error[160];
-    *code = 0;
-    switch (options_parse(program, argc, argv, operands, operand_max, operand_count, error, sizeof error)) {
-    case OPTIONS_RUN:
-        return true;
-    case OPTIONS_HELP:
-        options_help(program, stdout);
-        break;
-    case OPTIONS_VERSION:
-        puts("awt-bench " AWTD_VERSION);
-        break;
-    case OPTIONS_WRONG:
-        fprintf(stderr, "%s: %s\n", program->name, error);
-        *code = 2;
-        break;
-    }
-    return false;
-}
-
 int main(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "paper";

@@ -16,11 +16,6 @@ int bench_encode(int argc, char *const *argv);
 int bench_soak(int argc, char *const *argv);
 int bench_capacity(int argc, char *const *argv);
 
-/* Takes the command line, as options_parse does. False: there is nothing to run; what there is to say has been said,
- * and *code is the exit code. */
-bool bench_options(const option_program *program, int argc, char *const *argv, const char **operands,
-                   size_t operand_max, size_t *operand_count, int *code);
-
 /* How the values of a list lie. */
 typedef struct bench_spread {
     double mean, p50, p99, max;

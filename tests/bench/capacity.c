@@ -165,7 +165,7 @@ static bool plan_read(int argc, char *const *argv, capacity_plan *plan, int *cod
                                     "What a head of hair costs a core, and how many heads a core holds.", NULL, options,
                                     sizeof options / sizeof options[0]};
     size_t operands;
-    if (!bench_options(&program, argc, argv, NULL, 0, &operands, code)) {
+    if (!options_begin(&program, argc, argv, NULL, 0, &operands, code)) {
         return false;
     }
     *code = 2;

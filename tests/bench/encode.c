@@ -214,7 +214,7 @@ static bool plan_read(int argc, char *const *argv, encode_plan *plan, int *code)
                                     "What frames of moving hair cost to encode and decode, beside stock libdraco.",
                                     NULL, options, sizeof options / sizeof options[0]};
     size_t operands;
-    if (!bench_options(&program, argc, argv, NULL, 0, &operands, code)) {
+    if (!options_begin(&program, argc, argv, NULL, 0, &operands, code)) {
         return false;
     }
     plan->strands = (uint32_t)strands;

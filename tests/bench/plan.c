@@ -2,7 +2,6 @@
 #include "bench/plan.h"
 
 #include "base/options.h"
-#include "base/version.h"
 #include "motion/load.h"
 #include "motion/timeunit.h"
 
@@ -161,7 +160,7 @@ static bool plan_options(int argc, char *const *argv, paper_words *words, paper_
         "The table of the paper's §5.2: ms a 10 ms step, all finest wisps (single level) against the AWT.", NULL,
         options, sizeof options / sizeof options[0]};
     size_t operands;
-    return bench_options(&program, argc, argv, NULL, 0, &operands, code);
+    return options_begin(&program, argc, argv, NULL, 0, &operands, code);
 }
 
 bool paper_plan_read(int argc, char *const *argv, paper_plan *plan, int *code)

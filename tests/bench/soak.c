@@ -6,7 +6,6 @@
 
 #include "base/options.h"
 #include "base/vec.h"
-#include "base/version.h"
 #include "motion/load.h"
 #include "progress.h"
 
@@ -285,7 +284,7 @@ int bench_soak(int argc, char *const *argv)
         "CLIP...", options, sizeof options / sizeof options[0]};
     size_t clip_count;
     int code;
-    if (!bench_options(&program, argc, argv, clips, SOAK_MAX_CLIPS, &clip_count, &code)) {
+    if (!options_begin(&program, argc, argv, clips, SOAK_MAX_CLIPS, &clip_count, &code)) {
         return code;
     }
     if (clip_count == 0 || (style && !awt_style_find(style))) {

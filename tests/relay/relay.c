@@ -6,7 +6,6 @@
 #include "relay/lane.h"
 
 #include "base/options.h"
-#include "base/version.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -256,19 +255,9 @@ int main(int argc, char **argv)
     const option_program program = {"awt-relay", "forwards TCP connections over a line as bad as you like", NULL,
                                     options, sizeof options / sizeof options[0]};
     size_t operands;
-    char error[160];
-    switch (options_parse(&program, argc - 1, argv + 1, NULL, 0, &operands, error, sizeof error)) {
-    case OPTIONS_RUN:
-        break;
-    case OPTIONS_HELP:
-        options_help(&program, stdout);
-        return 0;
-    case OPTIONS_VERSION:
-        puts("awt-relay " AWTD_VERSION);
-        return 0;
-    case OPTIONS_WRONG:
-        fprintf(stderr, "awt-relay: %s\n", error);
-        return 2;
+    int code;
+    if (!options_begin(&program, argc - 1, argv + 1, NULL, 0, &operands, &code)) {
+        return code;
     }
     self.rules = (lane_rules){(int64_t)(delay_ms * 1000), (int64_t)(jitter_ms * 1000), rate, (size_t)queue};
     self.seed = (uint64_t)seed;
