@@ -6,23 +6,7 @@ set -eu
 out=build/demo
 state=$(mktemp -d "${TMPDIR:-/tmp}/awtd-demo.XXXXXX")
 log=$state/log
-daemon=
-client=
-
-# Ends client and daemon and takes the folder away: on success, on errors and on Ctrl-C.
-stop() {
-    status=$?
-    trap - EXIT INT TERM HUP
-    for process in $client $daemon; do
-        kill -TERM "$process" 2>/dev/null || true
-        wait "$process" 2>/dev/null || true
-    done
-    rm -rf "$state"
-    exit "$status"
-}
-trap stop EXIT
-trap 'exit 130' INT
-trap 'exit 143' TERM HUP
+. clients/beside.sh
 
 fail() {
     echo "demo: $1" >&2
@@ -36,17 +20,8 @@ done
 
 build/awtd --listen 127.0.0.1:0 --state-dir "$state" >"$log" 2>&1 &
 daemon=$!
-
-# Ready once it says where it listens; 10 s are plenty.
-address=
-tries=0
-while [ -z "$address" ]; do
-    address=$(sed -n 's/.*listening on \(127\.0\.0\.1:[0-9][0-9]*\).*/\1/p' "$log" | head -n 1)
-    kill -0 "$daemon" 2>/dev/null || fail "awtd did not start:"
-    tries=$((tries + 1))
-    [ "$tries" -le 100 ] || fail "awtd does not say that it listens:"
-    [ -n "$address" ] || sleep 0.1
-done
+processes=$daemon
+address=$(said "$log" "listening on " "$daemon") || fail "awtd did not start, or does not say that it listens:"
 
 # Options for what was given, in "$@".
 set -- --connect "$address" --token-file "$state/token" --fps 60 --out "$out" --json "$out/play.json"
@@ -63,8 +38,9 @@ rm -f "$out"/frame_*.glb
 # Not in the foreground: a shell runs its traps only between commands, and waiting can be interrupted.
 build/awtctl play "$@" &
 client=$!
+processes="$client $daemon"
 wait "$client"
-client=
+processes=$daemon
 
 echo
 echo "GLB files (Draco-compressed glTF, one every so many frames) are in $out, all figures in $out/play.json."
