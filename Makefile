@@ -12,7 +12,7 @@ FLAGS_tsan := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
 FLAGS_fuzz := -O1 -g -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=all -fno-omit-frame-pointer
 FLAGS_coverage := -O0 -g --coverage
 FLAGS := $(FLAGS_$(config)) $(if $(native),-O3 -march=native)
-$(if $(FLAGS),,$(error config is one of debug release asan tsan coverage fuzz, not "$(config)"))
+$(if $(FLAGS_$(config)),,$(error config is one of debug release asan tsan coverage fuzz, not "$(config)"))
 
 # Same bits everywhere: no contraction of a*b+c, no reassociation. (Without errno a square root is one instruction.)
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror

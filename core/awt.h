@@ -395,7 +395,7 @@ uint64_t awt_forest_hash(const awt_forest *forest);
 /* ---- exact state: snapshots and recordings ----------------------------------------------------------------------- */
 
 /* Goes up whenever the same inputs give other bits than before, or the state holds more than before. */
-#define AWT_PHYSICS_VERSION 3
+#define AWT_PHYSICS_VERSION 4
 
 /* Writes everything that the forest's future depends on, its groom included: restored, in another process or on
  * another machine, it goes on to the bit as if it had never stopped, poses that wait included. *size is always set to

@@ -30,12 +30,12 @@ void embed_refer(awt_forest *f, const tree *t);
 /* Offsets, frames and radii of a loose tree go towards rest (params.offset_relaxation; PHYSICS.md: frozen offsets
  * flatten the style), and what has come nearer than EMBED_SETTLED arrives: the tree is not loose any more. It is much
  * work for a slow process: done once in two or three steps (at 60 frames a second, once a frame), and of a sleeping
- * tree more seldom still. */
+ * tree more seldom still: a twentieth of what is left of the way at a time, which nobody sees. */
 void embed_relax(awt_forest *f, tree *t, float dt_s);
 
 /* Times between two relaxations, at least. */
 #define EMBED_RELAX_S 0.015f
-#define EMBED_RELAX_ASLEEP_S 0.04f
+#define EMBED_RELAX_ASLEEP_S 0.065f
 #define EMBED_SETTLED_M 1e-5f
 #define EMBED_SETTLED_TURN 1e-4f /* of a quaternion's components: 0.01 degrees */
 
