@@ -25,6 +25,7 @@ struct caller {
     uint64_t step;                  /* of a driver: the last one asked for */
     int64_t pose_us;                /* of a driver of a head that runs freely: time of its last pose */
     uint64_t request, subscription; /* of a viewer: its SUBSCRIBE, and its handle */
+    uint32_t spent;                 /* of a viewer: frames that came since it last gave credit */
     uint64_t visit, forest;         /* of a visitor: the visit it is at, and a maker's own head */
 };
 

@@ -161,6 +161,23 @@ static void viewer_count(caller *c, const struct proto_frame *frame)
     atomic_fetch_add_explicit(&b->stale, frame->flags & STALE, memory_order_relaxed);
 }
 
+/* Gives back the credit of frames that have come, half the window in one message; where deltas count on what is here,
+ * at once. */
+static void viewer_give_credit(caller *c, const struct proto_frame *frame)
+{
+    const load_plan *p = c->m.run->plan;
+    c->spent++;
+    if (!p->deltas && 2 * c->spent < p->credit) {
+        return;
+    }
+    proto_message credit = {.type = PROTO_CREDIT};
+    credit.as.credit.subscription = c->subscription;
+    credit.as.credit.frames = c->spent;
+    credit.as.credit.have = frame->sequence;
+    c->spent = 0;
+    caller_send(c, &credit);
+}
+
 static void viewer_heard(caller *c, const proto_message *message)
 {
     if (message->type == PROTO_ATTACH_REPLY) {
@@ -169,7 +186,6 @@ static void viewer_heard(caller *c, const proto_message *message)
         c->subscription = message->as.subscribe_reply.subscription;
         c->m.ready = true;
     } else if (message->type == PROTO_FRAME && message->request == c->request) {
-        proto_message credit = {.type = PROTO_CREDIT};
         const int64_t freed_ns = (int64_t)atomic_load(&c->m.run->heads.heads[c->head].freed_ns);
         if (freed_ns > 0) {
             viewer_measure_free(c, message, freed_ns);
@@ -177,10 +193,7 @@ static void viewer_heard(caller *c, const proto_message *message)
             viewer_measure(c, message);
         }
         viewer_count(c, &message->as.frame);
-        credit.as.credit.subscription = c->subscription;
-        credit.as.credit.frames = 1;
-        credit.as.credit.have = message->as.frame.sequence;
-        caller_send(c, &credit);
+        viewer_give_credit(c, &message->as.frame);
     }
 }
 

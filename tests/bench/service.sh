@@ -99,7 +99,7 @@ if wanted 3; then
     load throughput --scenario query --connections 64 --closed &&
         see 3 "throughput at 64 connections: answers a second, awtd / bare" \
             "$(figure throughput 'awtd / bare' came)" ">=" 0.8
-    load fan --scenario stream --connections 64 --forests 1 --closed --motion still --credit 8 &&
+    load fan --scenario stream --connections 64 --forests 1 --closed --motion still --credit 32 &&
         see 3 "fan-out of a 20 KB frame to 64: frames a second, awtd / bare" "$(figure fan 'awtd / bare' came)" ">=" 0.8
 fi
 if wanted 4; then
