@@ -1,4 +1,5 @@
-/* awtclient.c: requests and answers of callers that wait. The link (awtlink.c) does the work; here is the waiting.
+/* awtclient.c: requests and answers of callers that wait. The session (awtsession.c) does the work; here is the
+ * waiting. A session that is lost stays so until the caller asks for it (awtclient_reopen).
  *
  * Every call has one deadline, whatever comes meanwhile, so that a peer who is slow, silent or lying costs the caller
  * at most its timeout. */
@@ -11,7 +12,7 @@
 enum { DEFAULT_TIMEOUT_MS = 30000, UPLOAD_PIECE = 1 << 20 };
 
 struct awtclient {
-    awtlink *link;
+    awtsession *session;
     int timeout_ms;
     bool given_up; /* the daemon took nothing for that long: a message is cut off, and none can follow it */
 };
@@ -30,22 +31,22 @@ static bool timed_out(const awtclient *client, awtclient_error *error)
  * too. */
 static bool wait_and_pump(awtclient *client, int64_t deadline_us, awtclient_error *error)
 {
-    int64_t until_us = awtlink_deadline_us(client->link);
-    socket_wait(awtlink_descriptor(client->link), awtlink_wanted(client->link),
+    int64_t until_us = awtsession_deadline_us(client->session);
+    socket_wait(awtsession_descriptor(client->session), awtsession_wanted(client->session),
                 until_us < deadline_us ? until_us : deadline_us);
-    if (!awtlink_pump(client->link, socket_now_us(), error)) {
+    if (!awtsession_pump(client->session, socket_now_us(), error)) {
         return false;
     }
     return socket_left_ms(deadline_us) > 0 || timed_out(client, error);
 }
 
-/* The same for one who wants messages: no wait where the link has more already. */
+/* The same for one who wants messages: no wait where there is more already. */
 static bool turn(awtclient *client, int64_t deadline_us, awtclient_error *error)
 {
-    if (!awtlink_pending(client->link)) {
+    if (!awtsession_pending(client->session)) {
         return wait_and_pump(client, deadline_us, error);
     }
-    if (!awtlink_pump(client->link, socket_now_us(), error)) {
+    if (!awtsession_pump(client->session, socket_now_us(), error)) {
         return false;
     }
     return socket_left_ms(deadline_us) > 0 || timed_out(client, error);
@@ -57,7 +58,7 @@ static bool turn(awtclient *client, int64_t deadline_us, awtclient_error *error)
 static bool queue_message(awtclient *client, proto_message *message, int64_t deadline_us, awtclient_error *error)
 {
     awtclient_error why;
-    while (!awtlink_queue(client->link, message, &why)) {
+    while (!awtsession_queue(client->session, message, &why)) {
         if (why.code != AWTCLIENT_FULL) {
             return awtcodec_pass(error, &why);
         }
@@ -65,7 +66,7 @@ static bool queue_message(awtclient *client, proto_message *message, int64_t dea
             return false;
         }
     }
-    return awtlink_pump(client->link, socket_now_us(), error);
+    return awtsession_pump(client->session, socket_now_us(), error);
 }
 
 static bool send_message(awtclient *client, proto_message *message, int64_t deadline_us, awtclient_error *error)
@@ -76,7 +77,7 @@ static bool send_message(awtclient *client, proto_message *message, int64_t dead
     if (!queue_message(client, message, deadline_us, error)) {
         return false;
     }
-    while (awtlink_queued(client->link) > 0) {
+    while (awtsession_link(client->session) && awtlink_queued(awtsession_link(client->session)) > 0) {
         if (!wait_and_pump(client, deadline_us, error)) {
             client->given_up = true;
             return false;
@@ -92,16 +93,20 @@ bool awtclient_send(awtclient *client, proto_message *message, awtclient_error *
 
 static bool receive_message(awtclient *client, proto_message *message, int64_t deadline_us, awtclient_error *error)
 {
-    awtclient_error why;
-    while (!awtlink_next(client->link, message, &why)) {
-        if (why.code != 0) {
-            return awtcodec_pass(error, &why);
-        }
-        if (!turn(client, deadline_us, error)) {
+    for (;;) {
+        switch (awtsession_next(client->session, message, error)) {
+        case AWTSESSION_MESSAGE:
+            return true;
+        case AWTSESSION_LOST:
             return false;
+        case AWTSESSION_OPENED:
+            break;
+        case AWTSESSION_NOTHING:
+            if (!turn(client, deadline_us, error)) {
+                return false;
+            }
         }
     }
-    return true;
 }
 
 bool awtclient_receive(awtclient *client, proto_message *message, awtclient_error *error)
@@ -153,32 +158,47 @@ bool awtclient_create(awtclient *client, proto_message *request, proto_message *
 
 /* ---- the whole --------------------------------------------------------------------------------------- */
 
+/* Waits until the session is open. What comes before is nobody's. */
+static bool wait_open(awtclient *client, awtclient_error *error)
+{
+    proto_message *scratch = malloc(sizeof *scratch);
+    bool open = false, good = scratch || awtcodec_fail(error, AWTCLIENT_MEMORY, "not enough memory");
+    while (good && !open) {
+        open = awtsession_next(client->session, scratch, error) == AWTSESSION_OPENED;
+        good = open || turn(client, INT64_MAX, error); /* sessions have deadlines of their own until then */
+    }
+    free(scratch);
+    return good;
+}
+
 awtclient *awtclient_open(const awtclient_options *options, awtclient_error *error)
 {
+    const awtsession_options once = {.link = *options, .patience_ms = AWTSESSION_STAY_LOST};
     awtclient *client = calloc(1, sizeof *client);
     if (!client) {
         awtcodec_fail(error, AWTCLIENT_MEMORY, "not enough memory");
         return NULL;
     }
     client->timeout_ms = options->timeout_ms > 0 ? options->timeout_ms : DEFAULT_TIMEOUT_MS;
-    client->link = awtlink_open(options, socket_now_us(), error);
-    while (client->link && !awtlink_ready(client->link)) {
-        if (!turn(client, INT64_MAX, error)) { /* the link has its own deadline until it is ready */
-            awtlink_close(client->link);
-            client->link = NULL;
-        }
-    }
-    if (!client->link) {
-        free(client);
+    client->session = awtsession_open(&once, socket_now_us(), error);
+    if (!client->session || !wait_open(client, error)) {
+        awtclient_close(client);
         return NULL;
     }
     return client;
 }
 
+bool awtclient_reopen(awtclient *client, int patience_ms, awtclient_error *error)
+{
+    awtsession_return(client->session, patience_ms > 0 ? patience_ms : AWTSESSION_STAY_LOST, socket_now_us());
+    client->given_up = false;
+    return wait_open(client, error);
+}
+
 void awtclient_close(awtclient *client)
 {
     if (client) {
-        awtlink_close(client->link);
+        awtsession_close(client->session);
         free(client);
     }
 }
@@ -218,10 +238,10 @@ bool awtclient_upload(awtclient *client, uint32_t upload, const void *bytes, siz
 
 int awtclient_descriptor(const awtclient *client)
 {
-    return awtlink_descriptor(client->link);
+    return awtsession_descriptor(client->session);
 }
 
-awtlink *awtclient_link(awtclient *client)
+awtsession *awtclient_session(awtclient *client)
 {
-    return client->link;
+    return client->session;
 }

@@ -1,9 +1,11 @@
 /* awtclient.h: the one header of libawtclient, for C and C++. It brings the others: links that never wait (awtlink.h),
- * frames to hair of any time (awtframes.h, awtpace.h), into an engine's memory (awtwrite.h) and axes (awtspace.h),
- * clocks and credit (awtclock.h), and the messages (proto.h).
+ * and come back by themselves (awtsession.h), frames to hair of any time (awtframes.h, awtpace.h), into an engine's
+ * memory (awtwrite.h) and axes (awtspace.h), clocks and credit (awtclock.h), and the messages (proto.h).
  *
- * Here is talking to awtd by calls that wait: a link (awtlink.h, which holds options and errors, and is for
- * callers that cannot wait), and a poll until what is wanted has come. The codec (bytes in, messages out) is in codec.h
+ * Here is talking to awtd by calls that wait: a session, and a poll until what is wanted has come. Options and errors
+ * are in awtlink.h. No call waits longer than the options' timeout_ms, whatever the other end does: then its error is
+ * AWTCLIENT_TIMEOUT. After a call has failed by AWTCLIENT_CLOSED or AWTCLIENT_TIMEOUT, awtclient_reopen gets the
+ * connection and its forests back. The codec (bytes in, messages out) is in codec.h
  * and knows no socket; the one file with a socket is socket.c. */
 #ifndef AWTCLIENT_H
 #define AWTCLIENT_H
@@ -12,6 +14,7 @@
 #include "awtframes.h"
 #include "awtlink.h"
 #include "awtpace.h"
+#include "awtsession.h"
 #include "awtspace.h"
 #include "awtwrite.h"
 
@@ -25,6 +28,12 @@ typedef struct awtclient awtclient;
 awtclient *awtclient_open(const awtclient_options *options, awtclient_error *error);
 /* Says BYE where it can, closes, frees. Accepts NULL. */
 void awtclient_close(awtclient *client);
+
+/* Connects anew, with several tries within `patience_ms` (0: one), and opens again what was open: forests by their
+ * session or their tokens. awtsession_forests(awtclient_session(client), ...) says which those are, and which are gone
+ * and have to be created anew. Requests from before are not answered any more, and subscriptions have ended. False:
+ * `error` says why; it may be tried again. A `transport` in the options was for one connection: then this fails. */
+bool awtclient_reopen(awtclient *client, int patience_ms, awtclient_error *error);
 
 /* Sends a message; request id 0 in *message is replaced by a new one (returned in it) if it expects an answer. */
 bool awtclient_send(awtclient *client, proto_message *message, awtclient_error *error);
@@ -46,8 +55,8 @@ bool awtclient_upload(awtclient *client, uint32_t upload, const void *bytes, siz
 
 /* The descriptor, for tests and for callers that poll. */
 int awtclient_descriptor(const awtclient *client);
-/* The link below. Who uses it too takes from the same stream of messages; it stays the client's. */
-awtlink *awtclient_link(awtclient *client);
+/* The session below. Who uses it too takes from the same stream of messages; it stays the client's. */
+awtsession *awtclient_session(awtclient *client);
 
 #ifdef __cplusplus
 }

@@ -61,6 +61,7 @@ typedef struct awtlink_transport {
     void (*close)(void *context);
 } awtlink_transport;
 
+/* Zero it first: what is left 0 or NULL is as the line says, and later versions append fields. */
 typedef struct awtclient_options {
     const char *address;                /* "HOST:PORT"; host empty: localhost */
     const char *token_file;             /* NULL: where auth_token_path says; read only if the daemon wants a token */
@@ -69,6 +70,7 @@ typedef struct awtclient_options {
     int timeout_ms;                     /* of connecting and of each answer; 0: 30,000 */
     uint32_t queue_bytes;               /* that may wait to be sent, beyond one message; 0: 4 MiB */
     const awtlink_transport *transport; /* instead of TCP to `address`; the link takes it over. NULL: TCP */
+    const uint8_t *routing_key; /* [16]; links with the same reach the same daemon (PROTOCOL.md). NULL: random */
 } awtclient_options;
 
 /* ---- the link ---------------------------------------------------------------------------------------- */
@@ -81,6 +83,8 @@ typedef struct awtlink awtlink;
 awtlink *awtlink_open(const awtclient_options *options, int64_t now_us, awtclient_error *error);
 /* Says BYE if that goes out at once, closes, frees. Accepts NULL. */
 void awtlink_close(awtlink *link);
+/* The same without a BYE: the daemon keeps the session for a while, to be resumed. Accepts NULL. */
+void awtlink_drop(awtlink *link);
 
 /* Sends and receives what the transport takes and gives now, within bounds, so that one link does not keep the loop
  * from the others; drives the handshake. It receives no further while a whole message waits to be taken. `now_us` is
@@ -90,12 +94,18 @@ bool awtlink_pump(awtlink *link, int64_t now_us, awtclient_error *error);
 
 /* The next message that is the caller's business, if one has come: PING is answered here, BYE ends the link. Its texts
  * and blobs are good until the next call of this or of awtlink_pump. False with error->code 0: none now. False else:
- * the link has failed. */
+ * the link has failed.
+ *
+ * A request that nobody has answered timeout_ms after it was queued (of a CREATE: after its last PROGRESS) is answered
+ * here: by an ERROR with its id, its type as `about`, and the code PROTO_ERROR_TIMED_OUT. The link goes on; the answer,
+ * should it come after all, is given like any message. Of requests with several answers (STEP_MANY, SUBSCRIBE) the
+ * first counts. */
 bool awtlink_next(awtlink *link, proto_message *message, awtclient_error *error);
 
 /* Copies a message into the queue of what goes out. One that expects an answer gets a request id, if it has none,
  * returned in it; answers are matched by awtcodec_matches or by the id. AWTCLIENT_FULL: nothing was queued, and it may
- * be tried again; PROTO_ERROR_LIMIT, PROTO_ERROR_TOO_LONG: the message cannot be sent; else the link has failed. */
+ * be tried again (4096 requests without an answer are as many as may be); PROTO_ERROR_LIMIT, PROTO_ERROR_TOO_LONG: the
+ * message cannot be sent; else the link has failed. */
 bool awtlink_queue(awtlink *link, proto_message *message, awtclient_error *error);
 
 /* The handshake is over: messages may be queued. */
@@ -110,10 +120,14 @@ enum { AWTLINK_READ = 1, AWTLINK_WRITE = 2 };
 unsigned awtlink_wanted(const awtlink *link);
 /* There is more to do at once, whatever the descriptor says (a transport may hold bytes of its own). */
 bool awtlink_pending(const awtlink *link);
-/* When awtlink_pump wants to be called even if nothing comes; INT64_MAX: it does not matter. */
+/* When awtlink_pump, then awtlink_next, want to be called even if nothing comes: the handshake's or the next request's
+ * time is over then. INT64_MAX: it does not matter. */
 int64_t awtlink_deadline_us(const awtlink *link);
 /* The pump's time when the latest bytes came: that of the message given last, for clocks and ages. */
 int64_t awtlink_received_us(const awtlink *link);
+
+/* [16]: WELCOME's secret for RESUME, once the link is ready (awtsession.h does that). Good as long as the link. */
+const uint8_t *awtlink_session_token(const awtlink *link);
 
 /* Microseconds of this machine's monotonic clock (POSIX only). */
 int64_t awtclient_now_us(void);

@@ -186,6 +186,7 @@ bool awtcodec_welcome(awtcodec *codec, const proto_message *answer, bool *auth_r
                              "the daemon chose version %u of the protocol, which was not offered", welcome->version);
     }
     memcpy(codec->server_nonce, welcome->nonce, sizeof codec->server_nonce);
+    memcpy(codec->session, welcome->session, sizeof codec->session);
     codec->greatest_payload = welcome->greatest_payload;
     *auth_required = welcome->auth_required != 0;
     codec->in = !*auth_required;

@@ -22,6 +22,7 @@ typedef struct awtcodec {
     uint32_t greatest_payload; /* bytes that the daemon takes in one message; WELCOME said so */
     uint8_t server_nonce[AUTH_NONCE_SIZE], client_nonce[AUTH_NONCE_SIZE];
     uint8_t token[AUTH_TOKEN_SIZE];
+    uint8_t session[AUTH_TOKEN_SIZE]; /* WELCOME's, for RESUME */
     char name[AWTCODEC_NAME_MAX + 1];
     unsigned char *buffer; /* heap; bytes start .. end-1 have come and are not yet taken */
     size_t capacity, start, end;

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool random_bytes(void *bytes, size_t size, awtclient_error *error)
+bool handshake_random(void *bytes, size_t size, awtclient_error *error)
 {
     FILE *file = fopen("/dev/urandom", "rb");
     size_t got = 0;
@@ -40,10 +40,10 @@ bool handshake_init(handshake *self, awtcodec *codec, const awtclient_options *o
                     awtclient_error *error)
 {
     uint8_t key[AWTCODEC_KEY_SIZE];
-    if (!copy_options(self, options, error) || !random_bytes(key, sizeof key, error)) {
+    if (!copy_options(self, options, error) || (!options->routing_key && !handshake_random(key, sizeof key, error))) {
         return false;
     }
-    awtcodec_hello(codec, options->name, key, hello);
+    awtcodec_hello(codec, options->name, options->routing_key ? options->routing_key : key, hello);
     return true;
 }
 
@@ -96,7 +96,7 @@ static handshake_result authenticate(handshake *self, awtcodec *codec, proto_mes
     if (!self->token_given && !read_token(path, self->token, error)) {
         return HANDSHAKE_FAILED;
     }
-    if (!random_bytes(nonce, sizeof nonce, error)) {
+    if (!handshake_random(nonce, sizeof nonce, error)) {
         return HANDSHAKE_FAILED;
     }
     awtcodec_auth(codec, self->token, nonce, reply);

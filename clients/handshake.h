@@ -14,6 +14,9 @@ typedef struct handshake {
     uint8_t token[AUTH_TOKEN_SIZE];
 } handshake;
 
+/* Random bytes of the system's. */
+bool handshake_random(void *bytes, size_t size, awtclient_error *error);
+
 /* Copies what it needs of the options and gives HELLO, to be sent first. False: `error` says why (a token given is
  * none, no random numbers, no memory). */
 bool handshake_init(handshake *self, awtcodec *codec, const awtclient_options *options, proto_message *hello,

@@ -76,6 +76,15 @@ static bool make_ready(int descriptor)
            setsockopt(descriptor, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes) == 0;
 }
 
+/* The failure may pass. */
+static bool not_yet(awtclient_error *error)
+{
+    if (error) {
+        error->retry = true;
+    }
+    return false;
+}
+
 static void drop_descriptor(socket_state *self)
 {
     if (self->descriptor >= 0) {
@@ -106,8 +115,9 @@ static bool begin_next(socket_state *self, awtclient_error *error)
             return true;
         }
     }
-    return awtcodec_fail(error, AWTCLIENT_ADDRESS, "nobody answers at %.100s (%s): is awtd running there?",
-                         self->address, strerror(self->reason));
+    awtcodec_fail(error, AWTCLIENT_ADDRESS, "nobody answers at %.100s (%s): is awtd running there?", self->address,
+                  strerror(self->reason));
+    return not_yet(error);
 }
 
 /* Positive: connected; else what send and receive are to answer. */
@@ -205,7 +215,8 @@ static bool resolve(socket_state *self, const char *address, awtclient_error *er
     int failure = getaddrinfo(host[0] ? host : "localhost", port, &hints, &self->places);
     if (failure != 0) {
         self->places = NULL;
-        return awtcodec_fail(error, AWTCLIENT_ADDRESS, "%.100s cannot be found: %s", address, gai_strerror(failure));
+        awtcodec_fail(error, AWTCLIENT_ADDRESS, "%.100s cannot be found: %s", address, gai_strerror(failure));
+        return not_yet(error);
     }
     self->next = self->places;
     proto_str_copy(proto_str_of(address), self->address, sizeof self->address);

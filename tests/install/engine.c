@@ -2,6 +2,7 @@
 #include <awtclient.h>
 
 #include <stdio.h>
+#include <string.h>
 
 int main(void)
 {
@@ -11,11 +12,9 @@ int main(void)
     awtframes_shown shown;
     float nose[3] = {0, 0, 1};
     awtframes *frames = awtframes_create(20000);
+    memset(&options, 0, sizeof options);
     options.address = "nowhere";
-    options.token_file = options.token = options.name = NULL;
     options.timeout_ms = 100;
-    options.queue_bytes = 0;
-    options.transport = NULL;
     message.type = PROTO_LIST;
     awtspace_points_to(AWTSPACE_UNREAL, nose, nose, 1);
     if (!frames || awtframes_show(frames, 0, &shown) || awtclient_open(&options, &error) != NULL) {

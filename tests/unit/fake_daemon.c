@@ -60,6 +60,7 @@ bool fake_welcome(fake *self, bool auth_required)
     welcome.as.welcome.auth_required = auth_required;
     welcome.as.welcome.greatest_payload = PROTO_MAX_REQUEST;
     memset(welcome.as.welcome.nonce, 0x5A, sizeof welcome.as.welcome.nonce);
+    memset(welcome.as.welcome.session, ++self->sessions, sizeof welcome.as.welcome.session);
     return fake_read(self) && self->got.type == PROTO_HELLO && script_send(self, &welcome);
 }
 
@@ -88,12 +89,23 @@ void fake_error(fake *self, uint64_t request, uint16_t about, uint16_t code, con
     script_send(self, &error);
 }
 
+static bool accept_one(fake *self)
+{
+    struct pollfd entry = {.fd = self->listener, .events = POLLIN};
+    self->peer = poll(&entry, 1, FAKE_PATIENCE_MS) == 1 ? accept(self->listener, NULL, NULL) : -1;
+    return self->peer >= 0;
+}
+
+bool fake_hang_up(fake *self)
+{
+    close(self->peer);
+    return accept_one(self);
+}
+
 static void *fake_run(void *context)
 {
     fake *self = context;
-    struct pollfd entry = {.fd = self->listener, .events = POLLIN};
-    if (poll(&entry, 1, FAKE_PATIENCE_MS) == 1) {
-        self->peer = accept(self->listener, NULL, NULL);
+    if (accept_one(self)) {
         self->script(self);
         close(self->peer);
     }

@@ -1,5 +1,5 @@
-/* fake_daemon.h: a daemon that follows a script, for tests of the client: it serves one connection on the loopback, in
- * a thread of its own, as well or as badly as the script wants. */
+/* fake_daemon.h: a daemon that follows a script, for tests of the client: it serves one connection at a time on the
+ * loopback, in a thread of its own, as well or as badly as the script wants. */
 #ifndef FAKE_DAEMON_H
 #define FAKE_DAEMON_H
 
@@ -23,6 +23,7 @@ typedef struct fake {
     unsigned char *in; /* the last message's bytes */
     proto_message got;
     bool proof_good, said_bye;
+    uint8_t sessions; /* begun; the token of each is 16 times its number, from 1 */
     uint32_t pings_answered, motions, pieces;
     auth_sha256 uploaded;
 } fake;
@@ -36,6 +37,8 @@ void fake_stop(fake *self);
 awtclient *fake_open(const fake *self, const char *token_file, int timeout_ms, awtclient_error *error);
 
 /* For scripts. False: the connection has ended, or what came does not decode. */
+/* Ends the connection and takes the next one. */
+bool fake_hang_up(fake *self);
 bool fake_write(fake *self, const void *bytes, size_t size);
 bool script_send(fake *self, const proto_message *message);
 /* The next message, into `got`. */

@@ -12,7 +12,8 @@ class Error(c.Structure):
 
 class Options(c.Structure):
     _fields_ = [("address", c.c_char_p), ("token_file", c.c_char_p), ("token", c.c_char_p), ("name", c.c_char_p),
-                ("timeout_ms", c.c_int), ("queue_bytes", c.c_uint32), ("transport", c.c_void_p)]
+                ("timeout_ms", c.c_int), ("queue_bytes", c.c_uint32), ("transport", c.c_void_p),
+                ("routing_key", c.c_void_p)]
 
 
 class Str(c.Structure):
