@@ -37,6 +37,8 @@ SRC_loop := clients/engine_loop.c
 SRC_unit := tests/main.c $(wildcard tests/unit/*.c tests/e2e/*.c)
 SRC_bench := $(wildcard tests/bench/*.c)
 SRC_relay := $(wildcard tests/relay/*.c)
+# What tests look into of programs that are no library.
+SRC_lent := tests/relay/lane.c $(filter-out clients/load/awt_load.c,$(SRC_load))
 SRC_fuzz := $(wildcard tests/fuzz/*.c)
 HEADERS := $(wildcard $(foreach r,core proto server clients tests,$(r)/*.h $(r)/*/*.h))
 SRC_ALL := $(SRC_core) $(SRC_proto) $(SRC_server) $(SRC_clients) $(SRC_awtctl) $(SRC_load) $(SRC_loop) $(SRC_unit) $(SRC_bench) $(SRC_relay) $(SRC_fuzz)
@@ -66,7 +68,7 @@ help:
 	@echo '               GROOM=FILE MOTION=FILE JOINT=NAME SCALE=S UP=y|z HEAD=x,y,z,r: your own hair and motion'
 	@echo 'make viewer    installs what is missing, builds, and shows hair in your browser: prints the address to open'
 	@echo 'make test      installs what is missing, builds, runs every test (DEPS=never: installs nothing)'
-	@echo 'make soak      the long tests (about half an hour on two cores): minutes of violent motion, TSan, same bits, fuzzing'
+	@echo 'make soak      the long tests (about half an hour on two cores): minutes of violent motion, TSan, same bits, fuzzing; PARTS=bits: that alone'
 	@echo 'make sheets    the pictures of README.md: every style (and real groom that is there) through the lean'
 	@echo 'make pictures  the pictures of the viewer in README.md, drawn in Chromium'
 	@echo 'make all       builds; config=debug|release|asan|tsan|coverage|fuzz, native=1, CC=clang CXX=clang++, V=1'
@@ -79,7 +81,7 @@ $(B)/awtctl: $(call objects,$(SRC_awtctl)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/engine_loop: $(call objects,$(SRC_loop)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-load: $(call objects,$(SRC_load)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
-$(B)/tests: $(call objects,$(SRC_unit) tests/relay/lane.c $(filter-out clients/load/awt_load.c,$(SRC_load))) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(B)/tests: $(call objects,$(SRC_unit) $(SRC_lent)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 # The tests count what the heap is asked for (tests/unit/test_allocation.c): the linker leads these calls there.
 $(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_alloc posix_memalign free)
 # A bad line for the tests to put between client and daemon.

@@ -3,6 +3,7 @@
 # the most violent motion there is, what has threads under TSan, the same bits from both compilers at every optimisation and on
 # another architecture, kills at any moment, and fuzzing of all that reads bytes from outside. Its last line counts all.
 #
+# PARTS: these alone, of violence bits around fuzz clang kills tsan.
 # AWT_DATA: where motion files are (else ../shared/data); SECONDS_SIMULATED, FUZZ_SECONDS (of each target): for a shorter run.
 set -u
 cd "$(dirname "$0")/.."
@@ -76,7 +77,7 @@ same_bits() {
     shift 2
     make --no-print-directory -j"$jobs" B=build/bits SRC_unit="tests/main.c tests/unit/test_golden.c \
         tests/unit/test_styles.c tests/unit/fixture.c" SRC_core="$(echo core/base/*.c core/groom/*.c core/sim/*.c)" \
-        SRC_clients="$(echo clients/motion/*.c)" SRC_proto= SRC_server= WRAP= WARN="-Wall -Wextra" \
+        SRC_clients="$(echo clients/motion/*.c)" SRC_proto= SRC_server= SRC_lent= WRAP= WARN="-Wall -Wextra" \
         LDLIBS_ALL="-lm -pthread" "$@" build/bits/tests >build/make.log 2>&1 || {
         tail -n 20 build/make.log
         echo "FAIL $name: does not build"
@@ -128,26 +129,52 @@ fuzz() {
     fi
 }
 
+# ---- the parts ----
+
+part_violence() {
+    violence
+    took "the most violent motion"
+}
+
+part_bits() {
+    all_bits
+    took "same bits"
+}
+
+part_around() {
+    suite "behind TLS" sh tests/tls.sh build/release
+    suite "in a container" sh tests/container.sh
+    took "TLS and container"
+}
+
+part_fuzz() {
+    fuzzer
+    for target in strands hierarchy motion message snapshot frame json delta session; do
+        fuzz "$target"
+    done
+    took fuzzing
+}
+
+part_clang() {
+    build config=release CC=clang CXX=clang++ B=build/clang
+    suite "every test, clang -O2" build/clang/tests
+    took "every test, clang"
+}
+
+part_kills() {
+    AWT_KILLS=200 AWT_SEEDS=3000 suite "200 kills at any moment, 3,000 interleavings" build/release/tests killed interleave
+    took "kills and interleavings"
+}
+
+part_tsan() {
+    build config=tsan
+    suite "every test with more than one thread, TSan" build/tsan/tests server client_ e2e bench_ gusts_ worker
+    took "TSan"
+}
+
 build config=release
 took building
-violence
-took "the most violent motion"
-all_bits
-took "same bits"
-suite "behind TLS" sh tests/tls.sh build/release
-suite "in a container" sh tests/container.sh
-took "TLS and container"
-fuzzer
-for target in strands hierarchy motion message snapshot frame json delta session; do
-    fuzz "$target"
+for part in ${PARTS:-violence bits around fuzz clang kills tsan}; do
+    part_$part
 done
-took fuzzing
-build config=release CC=clang CXX=clang++ B=build/clang
-suite "every test, clang -O2" build/clang/tests
-took "every test, clang"
-AWT_KILLS=200 AWT_SEEDS=3000 suite "200 kills at any moment, 3,000 interleavings" build/release/tests killed interleave
-took "kills and interleavings"
-build config=tsan
-suite "every test with more than one thread, TSan" build/tsan/tests server client_ e2e bench_ gusts_ worker
-took "TSan"
 finish
