@@ -4,14 +4,17 @@
 
 #include <errno.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <unistd.h>
 
-/* Signal handlers have no argument: what they touch is here. */
+/* Signal handlers have no argument: what they touch is here. Other threads look at it than the one that is interrupted:
+ * atomic, and without a lock, which a handler must not take. */
 static wake *signal_wake;
 static wake *hangup_wake;
-static volatile sig_atomic_t stop_asked; /* how often */
-static volatile sig_atomic_t save_asked, hangup_asked;
+static atomic_int stop_asked; /* how often */
+static atomic_bool save_asked, hangup_asked;
+_Static_assert(ATOMIC_INT_LOCK_FREE == 2 && ATOMIC_BOOL_LOCK_FREE == 2, "signal handlers write these");
 
 bool wake_init(wake *w)
 {
@@ -45,9 +48,9 @@ void wake_clear(wake *w)
 static void on_signal(int number)
 {
     if (number == SIGUSR1) {
-        save_asked = 1;
-    } else if (stop_asked < 2) {
-        stop_asked++;
+        atomic_store(&save_asked, true);
+    } else if (atomic_load(&stop_asked) < 2) {
+        atomic_fetch_add(&stop_asked, 1);
     }
     wake_ring(signal_wake);
 }
@@ -65,7 +68,7 @@ void wake_on_signals(wake *w)
 static void on_hangup(int number)
 {
     (void)number;
-    hangup_asked = 1;
+    atomic_store(&hangup_asked, true);
     wake_ring(hangup_wake);
 }
 
@@ -78,24 +81,20 @@ void wake_on_hangup(wake *w)
 
 bool wake_take_hangup(void)
 {
-    const bool asked = hangup_asked != 0;
-    hangup_asked = 0;
-    return asked;
+    return atomic_exchange(&hangup_asked, false);
 }
 
 bool wake_stop_asked(void)
 {
-    return stop_asked != 0;
+    return atomic_load(&stop_asked) != 0;
 }
 
 bool wake_hurry_asked(void)
 {
-    return stop_asked > 1;
+    return atomic_load(&stop_asked) > 1;
 }
 
 bool wake_save_asked(void)
 {
-    const bool asked = save_asked != 0;
-    save_asked = 0;
-    return asked;
+    return atomic_exchange(&save_asked, false);
 }
