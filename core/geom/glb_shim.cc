@@ -201,62 +201,13 @@ void fill_model(tinygltf::Model *model, const glb_frame &frame)
     model->nodes = {make_node(frame)};
 }
 
-/* An accessor of the records' values at byte `offset` of each. */
-int add_field(tinygltf::Model *model, int type, int component_type, size_t count, size_t offset)
-{
-    int index = add_accessor(model, type, component_type, count);
-    model->accessors.back().bufferView = 0;
-    model->accessors.back().byteOffset = offset;
-    return index;
-}
+} // namespace
 
-void fill_lines(tinygltf::Model *model, const glb_lines &lines)
-{
-    fill_scene(model, lines.time_us, lines.binary, lines.binary_size);
-    tinygltf::BufferView records, indices;
-    records.buffer = indices.buffer = 0;
-    records.byteLength = lines.count * lines.stride;
-    records.byteStride = lines.stride;
-    records.target = TINYGLTF_TARGET_ARRAY_BUFFER;
-    indices.byteOffset = records.byteLength;
-    indices.byteLength = static_cast<size_t>(lines.count) * 8;
-    indices.target = TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
-    model->bufferViews = {records, indices};
-
-    tinygltf::Primitive primitive;
-    primitive.mode = TINYGLTF_MODE_LINE;
-    primitive.attributes["POSITION"] =
-        add_field(model, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, lines.count, 0);
-    model->accessors.back().minValues.assign(lines.min, lines.min + 3);
-    model->accessors.back().maxValues.assign(lines.max, lines.max + 3);
-    primitive.attributes["_RADIUS"] =
-        add_field(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT, lines.count, 12);
-    primitive.attributes["_PARENT"] =
-        add_field(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT, lines.count, 16);
-    primitive.attributes["_LEVEL"] =
-        add_field(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, lines.count, 20);
-    primitive.indices = add_accessor(model, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                                     static_cast<size_t>(lines.count) * 2);
-    model->accessors.back().bufferView = 1;
-
-    tinygltf::Mesh mesh;
-    mesh.name = "hair";
-    mesh.primitives = {primitive};
-    model->meshes = {mesh};
-    tinygltf::Node node;
-    place_node(&node, lines.head);
-    node.extras =
-        tinygltf::Value(Members{{"kind", tinygltf::Value(std::string("nodes"))}, {"nodes", whole(lines.count)}});
-    model->nodes = {node};
-}
-
-template <typename Frame>
-awt_status write_model(void (*fill)(tinygltf::Model *, const Frame &), const Frame &frame, geom_buffer *out,
-                       awt_error *error)
+awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *error)
 {
     try {
         tinygltf::Model model;
-        fill(&model, frame);
+        fill_model(&model, *frame);
         BufferSink sink(out, error);
         std::ostream stream(&sink);
         tinygltf::TinyGLTF writer;
@@ -270,18 +221,6 @@ awt_status write_model(void (*fill)(tinygltf::Model *, const Frame &), const Fra
     } catch (...) {
         return error_set(error, AWT_BAD_VALUE, "tinygltf cannot write this frame");
     }
-}
-
-} // namespace
-
-awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *error)
-{
-    return write_model(fill_model, *frame, out, error);
-}
-
-awt_status glb_shim_write_lines(const glb_lines *lines, geom_buffer *out, awt_error *error)
-{
-    return write_model(fill_lines, *lines, out, error);
 }
 
 size_t glb_shim_print(double value, char *text, size_t size)

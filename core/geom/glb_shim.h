@@ -64,19 +64,6 @@ typedef struct glb_frame {
 /* Appends the frame as a GLB. AWT_NO_MEMORY, AWT_LIMIT. */
 awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *error);
 
-/* A tree of nodes as lines, uncompressed (nodes.c). */
-typedef struct glb_lines {
-    uint32_t count;              /* nodes */
-    const unsigned char *binary; /* [binary_size]: records [count] of `stride` bytes, then indices u32 [count][2] */
-    size_t binary_size, stride;
-    float min[3], max[3]; /* of the positions */
-    awt_pose head;
-    int64_t time_us;
-} glb_lines;
-
-/* Appends the nodes as a GLB. AWT_NO_MEMORY, AWT_LIMIT. */
-awt_status glb_shim_write_lines(const glb_lines *lines, geom_buffer *out, awt_error *error);
-
 /* Writes the shortest text that reads as `value` again, exactly, into `text` [size]; returns its length. 24 characters
  * hold any finite number. */
 size_t glb_shim_print(double value, char *text, size_t size);
