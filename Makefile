@@ -80,7 +80,7 @@ $(B)/awtctl: $(call objects,$(SRC_awtctl)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 # A game's loop with hair, to be copied from.
 $(B)/engine_loop: $(call objects,$(SRC_loop)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-load: $(call objects,$(SRC_load)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
-$(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/tests: $(call objects,$(SRC_unit) $(SRC_lent)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 # The tests count what the heap is asked for (tests/unit/test_allocation.c): the linker leads these calls there.
 $(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_alloc posix_memalign free)

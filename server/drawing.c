@@ -33,6 +33,7 @@ typedef struct drawn_between {
 
 struct drawing {
     const awt_groom *groom;
+    const spread *helpers;
     awt_groom_info info;
     float *centres, *frames; /* [finest_nodes][3], [finest_nodes][4] */
     bool guides_made;
@@ -68,7 +69,7 @@ static void *take_memory(drawing *d, uint64_t count, size_t size)
     return taken;
 }
 
-awt_status drawing_create(const awt_groom *groom, drawing **out, awt_error *error)
+awt_status drawing_create(const awt_groom *groom, const spread *helpers, drawing **out, awt_error *error)
 {
     *out = NULL;
     drawing *d = calloc(1, sizeof *d);
@@ -76,6 +77,7 @@ awt_status drawing_create(const awt_groom *groom, drawing **out, awt_error *erro
         return error_set(error, AWT_NO_MEMORY, NULL);
     }
     d->groom = groom;
+    d->helpers = helpers;
     awt_groom_get_info(groom, &d->info);
     uint64_t points = (uint64_t)d->info.strand_count * d->info.points_per_strand;
     awt_status status = AWT_OK;
@@ -322,7 +324,8 @@ static awt_status draw_whole(const drawing_job *j, const kept_frame *kept, view 
                                 .head = show_head(j),
                                 .time_us = show_time_us(j),
                                 .unchanged = f->frame ? find_unchanged(j, v->name.form, f->made_at) : NULL,
-                                .previous = f->frame ? &f->frame->glb : NULL};
+                                .previous = f->frame ? &f->frame->glb : NULL,
+                                .helpers = j->d->helpers};
     geom_frame_stats stats = {0};
     awt_status status = geom_encode(f->layout, f->scratch, &def, &v->glb, &stats, j->error);
     if (status == AWT_OK) {
@@ -356,7 +359,13 @@ static awt_status use_form(const drawing_job *j, int form)
         lender = &forms[meshes];
         status = drawn_form_use(lender, NULL, j->d->groom, meshes, j->error);
     }
-    return status == AWT_OK ? drawn_form_use(&forms[form], lender, j->d->groom, form, j->error) : status;
+    if (status == AWT_OK) {
+        status = drawn_form_use(&forms[form], lender, j->d->groom, form, j->error);
+    }
+    if (status == AWT_OK && !what->bare && j->d->helpers) {
+        status = geom_scratch_widen(forms[form].scratch, forms[form].layout, j->d->helpers->hands, j->error);
+    }
+    return status;
 }
 
 /* The state, and what the form needs; of a form that is kept, the present frame in whole numbers is in the ring then.

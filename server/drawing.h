@@ -11,8 +11,9 @@
 
 typedef struct drawing drawing;
 
-/* The groom must outlive it. AWT_LIMIT (too many points), AWT_NO_MEMORY. */
-awt_status drawing_create(const awt_groom *groom, drawing **out, awt_error *error);
+/* The groom must outlive it, and `helpers`, which may be NULL, do their part of its frames. AWT_LIMIT (too many
+ * points), AWT_NO_MEMORY. */
+awt_status drawing_create(const awt_groom *groom, const spread *helpers, drawing **out, awt_error *error);
 /* Accepts NULL. */
 void drawing_destroy(drawing *d);
 

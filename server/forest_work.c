@@ -74,7 +74,7 @@ static awt_status make_hair(forest_work *w, awt_error *error)
     note_stage(w, FOREST_DRAWS, 0);
     if (status == AWT_OK) {
         awt_groom_get_info(w->groom, &w->info);
-        status = drawing_create(w->groom, &w->draws, error);
+        status = drawing_create(w->groom, w->helpers, &w->draws, error);
     }
     return status == AWT_OK && !w->forest ? make_forest(w, error) : status;
 }

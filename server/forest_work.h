@@ -24,11 +24,12 @@ typedef struct forest_work {
     atomic_uint note; /* while it is made: how far it has come, see forest_work_stage; written by the worker */
 
     /* the task; filled in before submitting */
-    groom_cache *grooms;  /* never NULL: where the groom is from, and goes */
-    recipe *making;       /* CREATE; NULL: the forest is made */
-    forest_input *inputs; /* motions and parameters, and at the end the query that wants them; owned. NULL: no step */
-    forest_input *looks;  /* who wants to see what there is then; owned */
-    bool runs;            /* by the daemon's clock: `free` is the task, and the inputs have no query behind them */
+    groom_cache *grooms;   /* never NULL: where the groom is from, and goes */
+    const spread *helpers; /* who helps to draw; NULL: nobody */
+    recipe *making;        /* CREATE; NULL: the forest is made */
+    forest_input *inputs;  /* motions and parameters, and at the end the query that wants them; owned. NULL: no step */
+    forest_input *looks;   /* who wants to see what there is then; owned */
+    bool runs;             /* by the daemon's clock: `free` is the task, and the inputs have no query behind them */
     free_task free;
     wishes wanted;
     bool wants_binding, wants_state;

@@ -92,6 +92,7 @@ static void make(registry *reg, resident *r, recipe *making, int64_t now_us)
     r->motion_us = making->start.time_us;
     atomic_init(&r->work.note, 0);
     r->work.grooms = reg->grooms;
+    r->work.helpers = worker_pool_spread(reg->pool);
     r->work.making = making;
     r->work.submitted_us = now_us;
     turns_submit(reg, r);

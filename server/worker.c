@@ -2,37 +2,9 @@
  *
  * Of the workers that have nothing to do, one keeps watch: it sleeps until the next job is due. The others sleep until
  * they are called, so that a job that becomes due wakes one thread and not all of them. */
-#include "worker.h"
-#include "base/assert.h"
-#include "thread.h"
+#include "worker_insides.h"
 
-#include <pthread.h>
-#include <stdlib.h>
 #include <time.h>
-
-typedef struct job_list {
-    job *first, *last;
-} job_list;
-
-/* One thread. */
-typedef struct worker {
-    worker_pool *pool;
-    unsigned number; /* counted from 1 */
-    pthread_t thread;
-} worker;
-
-struct worker_pool {
-    worker_pool_def def;
-    pthread_mutex_t mutex;                  /* guards all that follows */
-    pthread_cond_t called, relieved, build; /* idle workers; the one on watch; builders */
-    schedule waiting;
-    job_list done;
-    bool watched;  /* a worker keeps watch */
-    unsigned idle; /* workers that sleep until they are called */
-    bool stopping;
-    unsigned started;
-    worker threads[]; /* workers, then builders; [started] */
-};
 
 static void list_append(job_list *list, job *work)
 {
@@ -45,7 +17,8 @@ static void list_append(job_list *list, job *work)
     list->last = work;
 }
 
-/* ---- threads ----------------------------------------------------------------------------------------------------- */
+/* ---- jobs that ran, and those that wait ---------------------------------------------------------------------------
+ */
 
 static void pool_run(worker_pool *pool, job *work, unsigned number)
 {
@@ -96,7 +69,47 @@ static void wait_for_work(worker_pool *pool, int64_t now_us)
     }
 }
 
-static void *worker_main(void *argument)
+/* ---- parts ------------------------------------------------------------------------------------------------------- */
+
+/* Takes and does one part, of `own` alone where it is not NULL; with the lock, which is not held meanwhile. False:
+ * there is none. */
+static bool do_part(worker_pool *pool, parts *own)
+{
+    uint32_t index = 0;
+    parts *of = parts_take(&pool->offered, own, &index);
+    if (!of) {
+        return false;
+    }
+    pthread_mutex_unlock(&pool->mutex);
+    of->part(of->work, index);
+    pthread_mutex_lock(&pool->mutex);
+    if (parts_end(of) && of != own) {
+        pthread_cond_broadcast(&pool->together);
+    }
+    return true;
+}
+
+/* Never waits for a part that nobody does: what is left is the caller's. */
+void worker_share(void *context, spread_part part, void *work, uint32_t count)
+{
+    worker_pool *pool = context;
+    parts own = {.part = part, .work = work, .count = count};
+    pthread_mutex_lock(&pool->mutex);
+    parts_offer(&pool->offered, &own);
+    for (uint32_t n = 1; n < count; n++) {
+        call_one(pool);
+    }
+    while (do_part(pool, &own)) {
+    }
+    while (own.running > 0) {
+        pthread_cond_wait(&pool->together, &pool->mutex);
+    }
+    pthread_mutex_unlock(&pool->mutex);
+}
+
+/* ---- threads ----------------------------------------------------------------------------------------------------- */
+
+void *worker_main(void *argument)
 {
     const worker *self = argument;
     worker_pool *pool = self->pool;
@@ -105,7 +118,9 @@ static void *worker_main(void *argument)
         const int64_t now_us = pool->def.clock_us();
         job *work = schedule_take(&pool->waiting, now_us, self->number);
         if (!work) {
-            wait_for_work(pool, now_us);
+            if (!do_part(pool, NULL)) {
+                wait_for_work(pool, now_us);
+            }
             continue;
         }
         if (schedule_is_due(&pool->waiting, now_us) ||
@@ -120,7 +135,7 @@ static void *worker_main(void *argument)
     return NULL;
 }
 
-static void *builder_main(void *argument)
+void *builder_main(void *argument)
 {
     const worker *self = argument;
     worker_pool *pool = self->pool;
@@ -137,104 +152,6 @@ static void *builder_main(void *argument)
     }
     pthread_mutex_unlock(&pool->mutex);
     return NULL;
-}
-
-/* ---- life -------------------------------------------------------------------------------------------------------- */
-
-static unsigned builders_for(unsigned workers)
-{
-    return (workers + 1) / 2;
-}
-
-static bool start_threads(worker_pool *pool)
-{
-    const unsigned count = pool->def.workers + builders_for(pool->def.workers);
-    bool started = true;
-    while (started && pool->started < count) {
-        worker *w = &pool->threads[pool->started];
-        *w = (worker){.pool = pool, .number = pool->started + 1};
-        started = thread_start(&w->thread, w->number > pool->def.workers ? builder_main : worker_main, w);
-        pool->started += started;
-    }
-    return started;
-}
-
-/* A condition whose timed waits go by the monotonic clock. */
-static bool init_condition(pthread_cond_t *condition)
-{
-    pthread_condattr_t monotonic;
-    if (pthread_condattr_init(&monotonic) != 0) {
-        return false;
-    }
-    const bool made =
-        pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC) == 0 && pthread_cond_init(condition, &monotonic) == 0;
-    pthread_condattr_destroy(&monotonic);
-    return made;
-}
-
-static bool init_waiting(worker_pool *pool)
-{
-    if (pthread_mutex_init(&pool->mutex, NULL) != 0) {
-        return false;
-    }
-    if (init_condition(&pool->called)) {
-        if (init_condition(&pool->relieved)) {
-            if (init_condition(&pool->build)) {
-                return true;
-            }
-            pthread_cond_destroy(&pool->relieved);
-        }
-        pthread_cond_destroy(&pool->called);
-    }
-    pthread_mutex_destroy(&pool->mutex);
-    return false;
-}
-
-worker_pool *worker_pool_create(const worker_pool_def *def)
-{
-    const unsigned count = def->workers + builders_for(def->workers);
-    worker_pool *pool = calloc(1, sizeof *pool + count * sizeof pool->threads[0]);
-    if (!pool) {
-        return NULL;
-    }
-    pool->def = *def;
-    if (!schedule_init(&pool->waiting, def->greatest) || !init_waiting(pool)) {
-        schedule_fini(&pool->waiting);
-        free(pool);
-        return NULL;
-    }
-    if (!start_threads(pool)) {
-        worker_pool_destroy(pool);
-        return NULL;
-    }
-    return pool;
-}
-
-void worker_pool_destroy(worker_pool *pool)
-{
-    if (!pool) {
-        return;
-    }
-    pthread_mutex_lock(&pool->mutex);
-    pool->stopping = true;
-    pthread_cond_broadcast(&pool->called);
-    pthread_cond_broadcast(&pool->relieved);
-    pthread_cond_broadcast(&pool->build);
-    pthread_mutex_unlock(&pool->mutex);
-    for (unsigned i = 0; i < pool->started; i++) {
-        pthread_join(pool->threads[i].thread, NULL);
-    }
-    pthread_cond_destroy(&pool->called);
-    pthread_cond_destroy(&pool->relieved);
-    pthread_cond_destroy(&pool->build);
-    pthread_mutex_destroy(&pool->mutex);
-    schedule_fini(&pool->waiting);
-    free(pool);
-}
-
-unsigned worker_pool_count(const worker_pool *pool)
-{
-    return pool->def.workers;
 }
 
 /* ---- jobs -------------------------------------------------------------------------------------------------------- */

@@ -8,6 +8,7 @@
 #ifndef WORKER_H
 #define WORKER_H
 
+#include "base/spread.h"
 #include "schedule.h"
 
 typedef struct worker_pool worker_pool;
@@ -30,6 +31,10 @@ void worker_pool_destroy(worker_pool *pool);
 
 /* Of workers, without builders. */
 unsigned worker_pool_count(const worker_pool *pool);
+
+/* For jobs that run here: their parts are done by workers that have nothing else to do, and by the job's own. A step
+ * that is due comes first. Lives as long as the pool. */
+const spread *worker_pool_spread(const worker_pool *pool);
 
 /* The job must not be in the pool already. */
 void worker_pool_submit(worker_pool *pool, job *work);

@@ -47,3 +47,9 @@ awt_status geom_buffer_append(geom_buffer *buffer, const void *bytes, size_t siz
     }
     return status;
 }
+
+awt_status geom_buffer_align(geom_buffer *buffer, awt_error *error)
+{
+    static const unsigned char zeros[4];
+    return geom_buffer_append(buffer, zeros, (0 - buffer->size) % 4, error);
+}

@@ -15,6 +15,9 @@ awt_status geom_buffer_append(geom_buffer *buffer, const void *bytes, size_t siz
 /* Grows by `size` bytes, which hold nothing yet: *at points to them until the buffer grows again. Errors as above. */
 awt_status geom_buffer_extend(geom_buffer *buffer, size_t size, unsigned char **at, awt_error *error);
 
+/* Appends zeros up to a multiple of 4. Errors as above. */
+awt_status geom_buffer_align(geom_buffer *buffer, awt_error *error);
+
 #ifdef __cplusplus
 }
 #endif

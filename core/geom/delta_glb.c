@@ -39,9 +39,8 @@ static void put_length(unsigned char *end, size_t behind, uint32_t length)
 
 awt_status delta_glb_end(size_t block, geom_buffer *out, awt_error *error)
 {
-    static const unsigned char zeros[4];
     const uint32_t length = (uint32_t)(out->size - block);
-    awt_status status = geom_buffer_append(out, zeros, (0 - out->size) % 4, error);
+    awt_status status = geom_buffer_align(out, error);
     if (status == AWT_OK) {
         unsigned char *json_end = out->bytes + block - 8;           /* the binary chunk's header lies between */
         put_length(json_end, 3, length);                            /* before }]} */

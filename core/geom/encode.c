@@ -1,27 +1,27 @@
 /* encode.c: strands to a frame: patches to vertices to Draco, all of them behind the layout's JSON.
  *
- * Patches are taken by windows: as many in a row as hold RANS_LANES patches to be encoded, for the own encoder goes
- * through so many at once. What comes out of a patch does not depend on the window it was in. */
+ * Windows of patches (encode_window.h) are encoded by as many hands as there are, and put into the frame in their
+ * order. */
 #include "geom/encode.h"
 
 #include "base/error.h"
 #include "geom/buffer.h"
 #include "geom/delta_write.h"
-#include "geom/draco_shim.h"
+#include "geom/encode_stock.h"
+#include "geom/encode_window.h"
 #include "geom/glb_template.h"
-#include "geom/guides.h"
 #include "geom/head_pose.h"
 #include "geom/layout.h"
 #include "geom/quantised.h"
 
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
+
+enum { ENCODE_HANDS = 8 }; /* at most */
 
 struct geom_scratch {
-    draco_writer *writer;        /* NULL: stock encoder */
-    float *vertices[RANS_LANES]; /* of the largest patch each; NULL where points are taken as they are */
-    int16_t *turns[RANS_LANES];  /* of guides: [vertices][3] */
+    encode_hand *hands[ENCODE_HANDS]; /* [hand_count]; of the own encoder */
+    uint32_t hand_count;
+    float *stock_vertices; /* of the largest patch; of the stock encoder */
     size_t held;
     delta_scratch *delta; /* NULL: of no kind that has deltas */
 };
@@ -36,11 +36,10 @@ typedef struct encoding {
     awt_error *error;
 } encoding;
 
+/* ---- memory ------------------------------------------------------------------------------------------------------ */
+
 awt_status geom_scratch_create(const geom_layout *layout, geom_scratch **out, awt_error *error)
 {
-    const geom_patch largest = {0, layout->largest_patch};
-    const uint32_t vertices = layout_patch_vertices(layout, &largest);
-    const symbols_scheme scheme = layout->kind == GEOM_RIBBON ? SYMBOLS_TAGGED : SYMBOLS_RAW;
     *out = NULL;
     geom_scratch *scratch = calloc(1, sizeof *scratch);
     if (!scratch) {
@@ -48,22 +47,14 @@ awt_status geom_scratch_create(const geom_layout *layout, geom_scratch **out, aw
     }
     scratch->held = sizeof *scratch;
     awt_status status = AWT_OK;
-    if (!layout->stock) {
-        status =
-            draco_writer_create(vertices, layout->box.bits, scheme, layout->attributes.form, &scratch->writer, error);
-    }
-    for (int k = 0; k < RANS_LANES && layout->kind == GEOM_GUIDES && status == AWT_OK; k++) {
-        const size_t size = 3 * (size_t)vertices * sizeof(int16_t);
-        scratch->turns[k] = malloc(size);
+    if (layout->stock) {
+        const geom_patch largest = {0, layout->largest_patch};
+        const size_t size = 3 * (size_t)layout_patch_vertices(layout, &largest) * sizeof(float);
+        scratch->stock_vertices = malloc(size);
         scratch->held += size;
-        status = scratch->turns[k] ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
-    }
-    const int copies = layout->stock ? 1 : layout->kind == GEOM_RIBBON ? RANS_LANES : 0;
-    for (int k = 0; k < copies && status == AWT_OK; k++) {
-        const size_t size = 3 * (size_t)vertices * sizeof(float);
-        scratch->vertices[k] = malloc(size);
-        scratch->held += size;
-        status = scratch->vertices[k] ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
+        status = scratch->stock_vertices ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
+    } else {
+        status = geom_scratch_widen(scratch, layout, 1, error);
     }
     if (status == AWT_OK && layout->kind != GEOM_RIBBON && !layout->stock) {
         status = delta_scratch_create(layout, &scratch->delta, error);
@@ -76,23 +67,38 @@ awt_status geom_scratch_create(const geom_layout *layout, geom_scratch **out, aw
     return AWT_OK;
 }
 
+awt_status geom_scratch_widen(geom_scratch *scratch, const geom_layout *layout, uint32_t hands, awt_error *error)
+{
+    const uint32_t windows = (layout->patch_count + RANS_LANES - 1) / RANS_LANES; /* where all are encoded */
+    uint32_t wanted = hands < windows ? hands : windows;
+    wanted = layout->stock ? 0 : wanted < ENCODE_HANDS ? wanted : ENCODE_HANDS;
+    awt_status status = AWT_OK;
+    while (scratch->hand_count < wanted && status == AWT_OK) {
+        status = encode_hand_create(layout, &scratch->hands[scratch->hand_count], error);
+        scratch->hand_count += status == AWT_OK;
+    }
+    return status;
+}
+
 void geom_scratch_destroy(geom_scratch *scratch)
 {
     if (scratch) {
-        draco_writer_destroy(scratch->writer);
-        delta_scratch_destroy(scratch->delta);
-        for (int k = 0; k < RANS_LANES; k++) {
-            free(scratch->vertices[k]);
-            free(scratch->turns[k]);
+        for (uint32_t k = 0; k < scratch->hand_count; k++) {
+            encode_hand_destroy(scratch->hands[k]);
         }
+        free(scratch->stock_vertices);
+        delta_scratch_destroy(scratch->delta);
         free(scratch);
     }
 }
 
 size_t geom_scratch_bytes(const geom_scratch *scratch)
 {
-    return scratch->held + (scratch->writer ? draco_writer_bytes(scratch->writer) : 0) +
-           (scratch->delta ? delta_scratch_bytes(scratch->delta) : 0);
+    size_t bytes = scratch->held + (scratch->delta ? delta_scratch_bytes(scratch->delta) : 0);
+    for (uint32_t k = 0; k < scratch->hand_count; k++) {
+        bytes += encode_hand_bytes(scratch->hands[k]);
+    }
+    return bytes;
 }
 
 delta_scratch *geom_scratch_delta(geom_scratch *scratch)
@@ -100,27 +106,7 @@ delta_scratch *geom_scratch_delta(geom_scratch *scratch)
     return scratch->delta;
 }
 
-/* ---- points to vertices */
-
-static awt_status refuse_points(const encoding *e, const geom_patch *patch)
-{
-    return error_set(e->error, AWT_BAD_VALUE, "a point or frame among %s %u to %u is not a finite number",
-                     glb_words_of(e->layout->kind).lines, patch->first_strand,
-                     patch->first_strand + patch->strands - 1);
-}
-
-static const float *points_of(const encoding *e, const geom_patch *patch)
-{
-    return e->def->points + (size_t)patch->first_strand * e->layout->points_per_strand * 3;
-}
-
-/* ---- patches into the frame */
-
-static awt_status append_zeros(encoding *e)
-{
-    static const unsigned char zeros[4];
-    return geom_buffer_append(e->out, zeros, (4 - e->out->size % 4) % 4, e->error);
-}
+/* ---- patches into the frame -------------------------------------------------------------------------------------- */
 
 /* The bytes of a patch that did not change. */
 static awt_status keep_patch(encoding *e, uint32_t index)
@@ -135,198 +121,79 @@ static awt_status keep_patch(encoding *e, uint32_t index)
     glb_template_place(&layout->frame, index, &place, e->out);
     awt_status status =
         geom_buffer_append(e->out, previous->bytes + layout->frame.size + from.offset, from.size, e->error);
-    return status == AWT_OK ? append_zeros(e) : status;
+    return status == AWT_OK ? geom_buffer_align(e->out, e->error) : status;
 }
 
-/* What a job made of a patch. */
-static awt_status put_patch(encoding *e, uint32_t index, const draco_job *job, int lane)
+/* What a job of a window made of a patch. */
+static awt_status put_patch(encoding *e, const encode_hand *hand, const encode_window *w, int k)
 {
     const geom_layout *layout = e->layout;
+    const draco_job *job = &w->jobs[k];
     unsigned char *at;
     glb_patch place = {.offset = e->out->size - layout->frame.size, .size = job->size};
     awt_status status = geom_buffer_extend(e->out, job->size, &at, e->error);
     if (status != AWT_OK) {
         return status;
     }
-    draco_writer_put(e->scratch->writer, &layout->box, job, lane, at);
-    for (int k = 0; k < 3; k++) {
-        place.min[k] = draco_box_coordinate(&layout->box, k, job->found.least[k]);
-        place.max[k] = draco_box_coordinate(&layout->box, k, job->found.greatest[k]);
+    encode_window_put(hand, layout, w, k, at);
+    for (int axis = 0; axis < 3; axis++) {
+        place.min[axis] = draco_box_coordinate(&layout->box, axis, job->found.least[axis]);
+        place.max[axis] = draco_box_coordinate(&layout->box, axis, job->found.greatest[axis]);
     }
-    glb_template_patch(&layout->frame, index, &place, e->out);
+    glb_template_patch(&layout->frame, w->patches[k], &place, e->out);
     e->stats.encoded_patches++;
     e->stats.entropy_bits += job->entropy_bits;
-    return append_zeros(e);
+    return geom_buffer_align(e->out, e->error);
 }
 
-/* ---- our own encoder */
-
-/* Patches in a row, and the jobs of those that are to be encoded, in order. */
-typedef struct window {
-    uint32_t first, after;
-    draco_job jobs[RANS_LANES];
-    uint32_t patches[RANS_LANES]; /* of the jobs */
-    int count;
-} window;
-
-static bool is_kept(const encoding *e, uint32_t index)
+static awt_status put_window(encoding *e, const encode_hand *hand, const encode_window *w)
 {
-    return e->def->unchanged && e->def->unchanged[index];
-}
-
-/* False: a frame is not finite. */
-static bool add_turns(encoding *e, const geom_patch *patch, int lane, draco_job *job)
-{
-    const guides_part part = {patch->first_strand, patch->strands};
-    const float *frames = e->def->frames + 4 * (size_t)part.first_wisp * e->layout->points_per_strand;
-    job->turns = e->scratch->turns[lane];
-    return guides_turns(e->layout->binding, part, (const quat *)(const void *)frames, e->scratch->turns[lane]);
-}
-
-static awt_status add_job(encoding *e, uint32_t index, window *w)
-{
-    const geom_layout *layout = e->layout;
-    const geom_patch *patch = &layout->patches[index];
-    w->patches[w->count] = index;
-    if (e->def->quantised) {
-        const uint16_t *numbers = quantised_patch(e->def->quantised, layout, index);
-        w->jobs[w->count++] = (draco_job){.mesh = &layout->meshes[index], .numbers = numbers};
-        return AWT_OK;
+    awt_status status = w->status;
+    if (status != AWT_OK && e->error) {
+        *e->error = w->error;
     }
-    const float *points = points_of(e, patch);
-    if (layout->kind == GEOM_RIBBON) {
-        float *vertices = e->scratch->vertices[w->count];
-        if (!ribbon_vertices(&layout->shape, points, patch->strands, vertices, &e->stats.clamped_points)) {
-            return refuse_points(e, patch);
-        }
-        points = vertices;
-    }
-    draco_job *job = &w->jobs[w->count];
-    *job = (draco_job){.mesh = &layout->meshes[index], .positions = points};
-    if (layout->kind == GEOM_GUIDES && !add_turns(e, patch, w->count, job)) {
-        return refuse_points(e, patch);
-    }
-    w->count++;
-    return AWT_OK;
-}
-
-static awt_status fill_window(encoding *e, uint32_t first, window *w)
-{
-    awt_status status = AWT_OK;
-    *w = (window){.first = first, .after = first};
-    while (status == AWT_OK && w->after < e->layout->patch_count && (w->count < RANS_LANES || is_kept(e, w->after))) {
-        status = is_kept(e, w->after) ? AWT_OK : add_job(e, w->after, w);
-        w->after++;
+    e->stats.clamped_points += w->clamped_points;
+    int k = 0;
+    for (uint32_t i = w->first; i < w->after && status == AWT_OK; i++) {
+        status = encode_keeps(e->def, i) ? keep_patch(e, i) : put_patch(e, hand, w, k++);
     }
     return status;
 }
 
-static awt_status check_jobs(encoding *e, const window *w)
-{
-    for (int k = 0; k < w->count; k++) {
-        const draco_job *job = &w->jobs[k];
-        if (!job->found.finite) {
-            return refuse_points(e, &e->layout->patches[w->patches[k]]);
-        }
-        if (job->found.outside && e->layout->kind != GEOM_RIBBON) {
-            e->stats.clamped_points += quantise_count_outside(&e->layout->bounds, job->positions, job->mesh->vertices);
-        }
-    }
-    return AWT_OK;
-}
+/* ---- our own encoder --------------------------------------------------------------------------------------------- */
 
-static awt_status put_window(encoding *e, const window *w)
+/* Windows in a row, a hand for each. */
+typedef struct encode_round {
+    const encoding *e;
+    encode_window windows[ENCODE_HANDS];
+    uint32_t count;
+} encode_round;
+
+static void run_window(void *work, uint32_t index)
 {
-    awt_status status = AWT_OK;
-    for (uint32_t i = w->first, k = 0; i < w->after && status == AWT_OK; i++) {
-        if (is_kept(e, i)) {
-            status = keep_patch(e, i);
-        } else {
-            status = put_patch(e, i, &w->jobs[k], (int)k);
-            k++;
-        }
-    }
-    return status;
+    encode_round *r = work;
+    encode_window_run(r->e->scratch->hands[index], r->e->layout, r->e->def, &r->windows[index]);
 }
 
 static awt_status encode_own(encoding *e)
 {
-    window w = {.after = 0};
+    encode_round r = {.e = e};
     awt_status status = AWT_OK;
-    while (w.after < e->layout->patch_count && status == AWT_OK) {
-        status = fill_window(e, w.after, &w);
-        if (status == AWT_OK) {
-            draco_writer_run(e->scratch->writer, &e->layout->box, &e->layout->bounds, w.jobs, e->def->measure);
-            status = check_jobs(e, &w);
+    for (uint32_t first = 0; first < e->layout->patch_count && status == AWT_OK;) {
+        for (r.count = 0; r.count < e->scratch->hand_count && first < e->layout->patch_count; r.count++) {
+            encode_window_plan(e->layout, e->def, first, &r.windows[r.count]);
+            first = r.windows[r.count].after;
         }
-        status = status == AWT_OK ? put_window(e, &w) : status;
-    }
-    return status;
-}
-
-/* ---- the stock encoder */
-
-/* Vertices of a patch, set onto the bounds: what our own encoder does while it quantises. */
-static awt_status take_vertices(encoding *e, const geom_patch *patch, float *vertices)
-{
-    const geom_layout *layout = e->layout;
-    const float *points = points_of(e, patch);
-    const size_t count = (size_t)patch->strands * layout->points_per_strand;
-    if (layout->kind == GEOM_RIBBON) {
-        bool taken = ribbon_vertices(&layout->shape, points, patch->strands, vertices, &e->stats.clamped_points);
-        return taken ? AWT_OK : refuse_points(e, patch);
-    }
-    for (size_t i = 0; i < 3 * count; i++) {
-        if (!isfinite(points[i])) {
-            return refuse_points(e, patch);
-        }
-        vertices[i] = fminf(fmaxf(points[i], layout->bounds.least[i % 3]), layout->bounds.greatest[i % 3]);
-    }
-    e->stats.clamped_points += quantise_count_outside(&layout->bounds, points, count);
-    return AWT_OK;
-}
-
-/* The bounds that a decoder will find: rounding to the quantisation grid keeps the order, so that the rounded bounds
- * are the bounds of the rounded positions, exactly. */
-static void find_bounds(const draco_box *box, const float *vertices, size_t count, glb_patch *place)
-{
-    for (int k = 0; k < 3; k++) {
-        float least = vertices[k], greatest = vertices[k];
-        for (size_t i = 1; i < count; i++) {
-            float value = vertices[3 * i + (size_t)k];
-            least = value < least ? value : least;
-            greatest = value > greatest ? value : greatest;
-        }
-        place->min[k] = draco_shim_round(box, k, least);
-        place->max[k] = draco_shim_round(box, k, greatest);
-    }
-}
-
-static awt_status encode_stock(encoding *e)
-{
-    const geom_layout *layout = e->layout;
-    float *vertices = e->scratch->vertices[0];
-    awt_status status = AWT_OK;
-    for (uint32_t i = 0; i < layout->patch_count && status == AWT_OK; i++) {
-        const draco_mesh *mesh = &layout->meshes[i];
-        glb_patch place = {.offset = e->out->size - layout->frame.size};
-        status = take_vertices(e, &layout->patches[i], vertices);
-        if (status == AWT_OK) {
-            find_bounds(&layout->box, vertices, mesh->vertices, &place);
-            status = draco_shim_encode(&layout->box, vertices, mesh->vertices, layout->indices, mesh->triangles, e->out,
-                                       e->error);
-        }
-        if (status == AWT_OK) {
-            place.size = e->out->size - layout->frame.size - place.offset;
-            glb_template_patch(&layout->frame, i, &place, e->out);
-            e->stats.encoded_patches++;
-            status = append_zeros(e);
+        spread_run(e->def->helpers, run_window, &r, r.count);
+        for (uint32_t k = 0; k < r.count && status == AWT_OK; k++) {
+            status = put_window(e, e->scratch->hands[k], &r.windows[k]);
         }
     }
     return status;
 }
 
-/* ---- frames */
+/* ---- frames --------------------------------------------------------------------------------------------------------
+ */
 
 awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const geom_frame_def *def, geom_buffer *out,
                        geom_frame_stats *stats, awt_error *error)
@@ -349,7 +216,8 @@ awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const g
         status = glb_template_begin(&layout->frame, &head, def->time_us, out, error);
     }
     if (status == AWT_OK) {
-        status = layout->stock ? encode_stock(&e) : encode_own(&e);
+        status =
+            layout->stock ? encode_stock(layout, def, scratch->stock_vertices, out, &e.stats, error) : encode_own(&e);
     }
     if (status != AWT_OK) {
         return status;

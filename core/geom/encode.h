@@ -7,6 +7,7 @@
 #define GEOM_ENCODE_H
 
 #include "awt.h"
+#include "base/spread.h"
 #include "geom/read.h" /* GEOM_MAX_GLB */
 
 #ifdef __cplusplus
@@ -69,9 +70,12 @@ uint32_t geom_layout_strand(const geom_layout *layout, uint32_t index);
 void geom_layout_evaluate(const geom_layout *layout, const awt_groom *groom, const bool *wisps, const float *centres,
                           const float *frames, float *scratch, float *points);
 
-/* One encoder's working memory; one thread at a time. */
+/* One encoder's working memory; one frame at a time. */
 typedef struct geom_scratch geom_scratch;
 awt_status geom_scratch_create(const geom_layout *layout, geom_scratch **out, awt_error *error);
+/* Takes memory for so many threads that encode one frame together (geom_frame_def.helpers), as far as the layout has
+ * patches for them: from 5 on for 2, from 9 on for 3. AWT_NO_MEMORY. */
+awt_status geom_scratch_widen(geom_scratch *scratch, const geom_layout *layout, uint32_t hands, awt_error *error);
 void geom_scratch_destroy(geom_scratch *scratch);
 /* Bytes that it holds. */
 size_t geom_scratch_bytes(const geom_scratch *scratch);
@@ -92,7 +96,8 @@ typedef struct geom_frame_def {
     const bool *unchanged; /* [geom_layout_patches] */
     const geom_buffer *previous;
 
-    bool measure; /* work out entropy_bits, which takes time */
+    const spread *helpers; /* who helps, own encoder: the bytes are the same whoever does; NULL: nobody */
+    bool measure;          /* work out entropy_bits, which takes time */
 } geom_frame_def;
 
 typedef struct geom_frame_stats {

@@ -64,6 +64,12 @@ static void table(FILE *text, const encode_plan *plan, const encode_row rows[ENC
         fprintf(text, " %s %.3f (%zu points)", LEVELS[level], r->evaluate_ms, r->points);
     }
     fputs("\n", text);
+    for (int i = 0; i < ENCODE_WHOLE_ROWS && plan->hands > 1; i += ENCODE_MOVINGS) {
+        if (rows[i].shared_encode_ms > 0) {
+            fprintf(text, "by %u hands together: %s %s %.3f ms, %.2fx one\n", plan->hands, KINDS[rows[i].kind],
+                    LEVELS[rows[i].level], rows[i].shared_encode_ms, rows[i].encode_ms / rows[i].shared_encode_ms);
+        }
+    }
     fprintf(text, "memory of an encoder: ribbon %.1f MiB, strands %.1f MiB\n", (double)rows[0].scratch_bytes / 1048576,
             (double)rows[ENCODE_MOVINGS].scratch_bytes / 1048576);
 }
@@ -117,6 +123,9 @@ static void json_row(jsonout *j, const encode_row *r)
     jsonout_unsigned(j, "patches", r->patches);
     jsonout_real(j, "encode_ms", r->encode_ms);
     jsonout_real(j, "stock_encode_ms", r->stock_encode_ms);
+    if (r->shared_encode_ms > 0) {
+        jsonout_real(j, "shared_encode_ms", r->shared_encode_ms);
+    }
     jsonout_real(j, "vertices_ms", r->vertices_ms);
     jsonout_real(j, "evaluate_ms", r->evaluate_ms);
     jsonout_real(j, "bytes_per_point", r->bytes_per_point);
@@ -195,7 +204,7 @@ static bool plan_check(encode_plan *plan, const char *style, double begin_s)
 static bool plan_read(int argc, char *const *argv, encode_plan *plan, int *code)
 {
     const char *style = "long";
-    long long strands = AWT_DEFAULT_STRANDS, points = 16, frames = 30, stride = 6;
+    long long strands = AWT_DEFAULT_STRANDS, points = 16, frames = 30, stride = 6, hands = 1;
     double begin_s = 1;
     *plan = (encode_plan){.motion_name = "lean"};
     const option options[] = {
@@ -208,6 +217,7 @@ static bool plan_read(int argc, char *const *argv, encode_plan *plan, int *code)
         {"begin", OPTION_REAL, "S", &begin_s, 0, 60, "seconds into the motion at which measuring begins"},
         {"frames", OPTION_INTEGER, "N", &frames, 1, ENCODE_MAX_FRAMES, "frames to measure"},
         {"stride", OPTION_INTEGER, "N", &stride, 1, 1000, "measure every Nth frame of 60 a second"},
+        {"hands", OPTION_INTEGER, "N", &hands, 1, 8, "threads that encode a frame together, measured beside one"},
         {"json", OPTION_OPTIONAL_TEXT, "FILE", &plan->json, 0, 0, "all figures as JSON, to FILE or stdout"},
     };
     const option_program program = {"awt-bench encode",
@@ -221,6 +231,7 @@ static bool plan_read(int argc, char *const *argv, encode_plan *plan, int *code)
     plan->points = (uint32_t)points;
     plan->frames = (uint32_t)frames;
     plan->stride = (uint32_t)stride;
+    plan->hands = (uint32_t)hands;
     *code = 2;
     return plan_check(plan, style, begin_s);
 }

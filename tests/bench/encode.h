@@ -19,6 +19,7 @@ typedef struct encode_plan {
     uint32_t frames;  /* to be measured, of one every ENCODE_FRAME_RATE-th second times `stride` */
     int64_t begin_us; /* the first of them */
     uint32_t stride;
+    uint32_t hands;   /* threads that encode a frame together, measured beside one */
     const char *json; /* file, "-" or NULL */
 } encode_plan;
 
@@ -35,6 +36,7 @@ typedef struct encode_row {
     uint32_t patches;
     size_t points;                                 /* strand points of a frame */
     double encode_ms, stock_encode_ms;             /* the stock encoder knows no patches that are kept */
+    double shared_encode_ms;                       /* by the plan's hands; 0: not measured */
     double evaluate_ms;                            /* that made the level's strands of the sections */
     double vertices_ms;                            /* the part of both that makes ribbons of strands */
     double bytes_per_point, stock_bytes_per_point; /* of a delta's stock: the same numbers, coded by libdraco */

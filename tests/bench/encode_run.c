@@ -5,6 +5,7 @@
 #include "bench/encode_delta.h"
 
 #include "base/error.h"
+#include "clock.h"
 #include "files.h"
 #include "geom/draco_read.h"
 #include "geom/draco_shim.h"
@@ -13,6 +14,7 @@
 #include "geom/topology.h"
 #include "progress.h"
 #include "quantile.h"
+#include "worker.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -113,7 +115,8 @@ typedef struct subject {
     float *points; /* of the layout's level */
     float *vertices;
     bool *unchanged;
-    double *encode_ms[ENCODE_MOVINGS], *stock_ms, *vertices_ms, *evaluate_ms, *decode_ms,
+    const spread *helpers; /* NULL: not measured */
+    double *encode_ms[ENCODE_MOVINGS], *shared_ms, *stock_ms, *vertices_ms, *evaluate_ms, *decode_ms,
         *stock_decode_ms;                             /* [frames] */
     double bytes, stock_bytes, entropy_bits, error_m; /* sums, and the greatest */
     uint32_t done;
@@ -123,6 +126,35 @@ typedef struct subject {
 static size_t points_of(const subject *s)
 {
     return (size_t)geom_layout_strands(s->layout) * s->layout->points_per_strand;
+}
+
+static void nobody_waits(void *context)
+{
+    (void)context;
+}
+
+/* The daemon's own workers: beside the thread that measures. */
+static worker_pool *make_pool(unsigned workers)
+{
+    return worker_pool_create(
+        &(worker_pool_def){.workers = workers, .greatest = 1, .clock_us = clock_monotonic_us, .wake = nobody_waits});
+}
+
+static spread of_hands(worker_pool *pool, uint32_t hands)
+{
+    spread all = *worker_pool_spread(pool);
+    all.hands = hands;
+    return all;
+}
+
+/* A layout that several hands encode nothing of together has no helpers. */
+static awt_status take_helpers(subject *s, const spread *helpers, awt_error *error)
+{
+    if (s->layout->patch_count <= RANS_LANES) {
+        return AWT_OK;
+    }
+    s->helpers = helpers;
+    return geom_scratch_widen(s->scratch, s->layout, helpers->hands, error);
 }
 
 static awt_status make_subject(const hair *h, geom_kind kind, geom_level level, uint32_t frames, subject *s,
@@ -147,7 +179,8 @@ static awt_status make_subject(const hair *h, geom_kind kind, geom_level level, 
     status =
         draco_reader_create(layout_patch_vertices(s->layout, &largest),
                             topology_triangles(kind, largest.strands, h->info.points_per_strand), &s->reader, error);
-    double **times[] = {&s->stock_ms, &s->vertices_ms, &s->evaluate_ms, &s->decode_ms, &s->stock_decode_ms};
+    double **times[] = {&s->shared_ms,   &s->stock_ms,  &s->vertices_ms,
+                        &s->evaluate_ms, &s->decode_ms, &s->stock_decode_ms};
     bool made = true;
     for (size_t k = 0; k < sizeof times / sizeof times[0]; k++) {
         made = (*times[k] = calloc(frames, sizeof(double))) && made;
@@ -177,6 +210,7 @@ static void free_subject(subject *s)
     for (size_t k = 0; k < ENCODE_MOVINGS; k++) {
         free(s->encode_ms[k]);
     }
+    free(s->shared_ms);
     free(s->stock_ms);
     free(s->vertices_ms);
     free(s->evaluate_ms);
@@ -223,6 +257,11 @@ static awt_status time_own(subject *s, geom_frame_def *def, awt_error *error)
                              &s->encode_ms[moving][s->done], error);
     }
     def->unchanged = NULL;
+    if (status == AWT_OK && s->helpers) {
+        def->helpers = s->helpers;
+        status = time_encode(s->layout, s->scratch, def, REPEATS, &s->kept, NULL, &s->shared_ms[s->done], error);
+        def->helpers = NULL;
+    }
     s->bytes += (double)s->frame.size;
     if (s->layout->kind == GEOM_RIBBON) {
         uint32_t clamped = 0;
@@ -317,6 +356,7 @@ static void fill_rows(subject *s, encode_row *rows)
                       .patches = s->layout->patch_count,
                       .points = points,
                       .stock_encode_ms = median(s->stock_ms, s->done),
+                      .shared_encode_ms = s->helpers ? median(s->shared_ms, s->done) : 0,
                       .evaluate_ms = median(s->evaluate_ms, s->done),
                       .vertices_ms = median(s->vertices_ms, s->done),
                       .bytes_per_point = s->bytes / all,
@@ -369,13 +409,19 @@ bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS], guide
     delta_subject *deltas = NULL;
     guides_subject guides = {0};
     awt_error error = {0};
+    worker_pool *pool = plan->hands > 1 ? make_pool(plan->hands - 1) : NULL;
+    const spread helpers = pool ? of_hands(pool, plan->hands) : (spread){.hands = 1};
     awt_status status = make_hair(plan, &h, &error);
+    if (status == AWT_OK && plan->hands > 1 && !pool) {
+        status = error_set(&error, AWT_NO_MEMORY, NULL);
+    }
     if (status == AWT_OK) {
         status = guides_subject_init(&guides, h.groom, plan->frames, &error);
     }
     for (int k = 0; k < ENCODE_SUBJECTS && status == AWT_OK; k++) {
         status = make_subject(&h, k % 2 ? GEOM_STRANDS : GEOM_RIBBON, (geom_level)(k / 2), plan->frames, &subjects[k],
                               &error);
+        status = status == AWT_OK && pool ? take_helpers(&subjects[k], &helpers, &error) : status;
     }
     if (status == AWT_OK) {
         status = delta_subject_create(h.groom, plan->frames, &deltas, &error);
@@ -399,6 +445,7 @@ bool encode_measure(const encode_plan *plan, encode_row rows[ENCODE_ROWS], guide
     }
     guides_subject_fini(&guides);
     free_hair(&h);
+    worker_pool_destroy(pool);
     if (status != AWT_OK) {
         fprintf(stderr, "awt-bench encode: %s\n", error.text);
     }

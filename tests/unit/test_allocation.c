@@ -162,7 +162,7 @@ TEST(drawing_allocates_nothing_in_the_steady_state)
     drawing *d = NULL;
     awt_error error = {0};
     picture *pictures[PICTURES] = {NULL};
-    CHECK_INT(drawing_create(groom, &d, &error), AWT_OK);
+    CHECK_INT(drawing_create(groom, NULL, &d, &error), AWT_OK);
     const uint64_t empty = drawing_bytes(d);
     unsigned counted = 0;
     for (uint64_t n = 1; n <= STEPS; n++) {

@@ -48,7 +48,7 @@ TEST(between_steps_the_hair_is_between)
     awt_forest *f = fixture_forest(fixture_groom("short", 200), "short", zero, zero);
     drawing *d = NULL;
     geom_strands from = {0}, to = {0}, quarter = {0};
-    CHECK_INT(drawing_create(awt_forest_groom(f), &d, NULL), AWT_OK);
+    CHECK_INT(drawing_create(awt_forest_groom(f), NULL, &d, NULL), AWT_OK);
     for (int64_t t = AWT_STEP_US; t <= SWAY_US; t += AWT_STEP_US) {
         step(f, t);
     }
@@ -79,7 +79,7 @@ TEST(between_two_steps_alone)
 {
     awt_forest *f = fixture_forest(fixture_groom("short", 200), "short", zero, zero);
     drawing *d = NULL;
-    CHECK_INT(drawing_create(awt_forest_groom(f), &d, NULL), AWT_OK);
+    CHECK_INT(drawing_create(awt_forest_groom(f), NULL, &d, NULL), AWT_OK);
     CHECK_INT(drawing_show(d, f, 5000), 0); /* nothing was held */
     drawing_hold(d, f);
     CHECK_INT(awt_forest_advance(f, 10000, NULL, NULL), AWT_OK);
