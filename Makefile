@@ -15,9 +15,11 @@ FLAGS := $(FLAGS_$(config)) $(if $(native),-O3 -march=native)
 $(if $(FLAGS_$(config)),,$(error config is one of debug release asan tsan coverage fuzz, not "$(config)"))
 
 # Same bits everywhere: no contraction of a*b+c, no reassociation. (Without errno a square root is one instruction.)
+# gcc 12.2 contracts all the same where it vectorises straight code whose signs alternate, as in quat_mul (its bug 107647):
+# tests/soak.sh looks at the instructions.
 WARN := -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
-CFLAGS_ALL := -std=c17 -D_POSIX_C_SOURCE=200809L -ffp-contract=off -fno-math-errno $(WARN) -Wmissing-prototypes -pthread $(FLAGS) $(CFLAGS)
-CXXFLAGS_ALL := -std=c++17 -ffp-contract=off -fno-math-errno $(WARN) -pthread $(FLAGS) $(CXXFLAGS)
+CFLAGS_ALL := -std=c17 -D_POSIX_C_SOURCE=200809L -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno $(WARN) -Wmissing-prototypes -pthread $(FLAGS) $(CFLAGS)
+CXXFLAGS_ALL := -std=c++17 -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno $(WARN) -pthread $(FLAGS) $(CXXFLAGS)
 LDLIBS_ALL := -ltinygltf -ldraco -lm -pthread $(LDLIBS)
 
 # Who may include what (the header table of the house): each room sees only these folders.
@@ -109,7 +111,7 @@ SRC_receiver := $(patsubst %,core/%.c,base/arena base/crc32c base/error geom/bin
 	geom/receive geom/receive_delta geom/symbols_read geom/topology sim/evaluate) clients/framering.c clients/web/receiver.c
 # Motion files and built-in clips, for the viewer.
 SRC_motion := core/base/error.c core/base/trig.c $(filter-out clients/motion/load.c,$(wildcard clients/motion/*.c)) clients/web/motion.c
-CFLAGS_web := -std=c17 -O2 -ffp-contract=off -fno-math-errno $(WARN) -Wmissing-prototypes $(INC_clients)
+CFLAGS_web := -std=c17 -O2 -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno $(WARN) -Wmissing-prototypes $(INC_clients)
 EXPORTS := -sSTANDALONE_WASM --no-entry -sALLOW_MEMORY_GROWTH -sEXPORTED_FUNCTIONS=_malloc$(,)_free
 MINGW_CC ?= x86_64-w64-mingw32-gcc
 EMCC ?= emcc

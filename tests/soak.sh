@@ -69,33 +69,55 @@ violence() {
     done
 }
 
-# ---- the same bits everywhere: the tests that know the very bits, in a program without C++ ----
+# ---- the same bits everywhere: the tests that know the very bits of hair, and the bytes of every kind of frame ----
 
 # same_bits NAME RUNNER MAKE-ARGUMENTS...
 same_bits() {
     name=$1 runner=$2
     shift 2
-    make --no-print-directory -j"$jobs" B=build/bits SRC_unit="tests/main.c tests/unit/test_golden.c \
-        tests/unit/test_styles.c tests/unit/fixture.c" SRC_core="$(echo core/base/*.c core/groom/*.c core/sim/*.c)" \
-        SRC_clients="$(echo clients/motion/*.c)" SRC_proto= SRC_server= SRC_lent= WRAP= WARN="-Wall -Wextra" \
-        LDLIBS_ALL="-lm -pthread" "$@" build/bits/tests >build/make.log 2>&1 || {
+    rm -rf build/bits
+    make --no-print-directory -j"$jobs" B=build/bits SRC_unit="$bits_tests tests/unit/test_golden_frames.c" \
+        SRC_core="$bits_core $(echo core/geom/*.c core/geom/*.cc)" SRC_clients="$(echo clients/motion/*.c)" SRC_proto= \
+        SRC_server= SRC_lent= WRAP= WARN="-Wall -Wextra" "$@" build/bits/tests >build/make.log 2>&1 || {
         tail -n 20 build/make.log
         echo "FAIL $name: does not build"
         failed=$((failed + 1))
         return
     }
     suite "same bits, $name" $runner build/bits/tests golden same_on_every_compiler
+    fused "$name"
+}
+
+# fused NAME: whether the compiler made a*b+c one rounding, as it was told not to.
+fused() {
+    if ! command -v "${objdump:=objdump}" >/dev/null 2>&1; then
+        skipped=$((skipped + 1))
+        echo "skip: no $objdump here"
+        return
+    fi
+    found=$("$objdump" -d build/bits/libawt.a | grep -c -e 'vfn*m[a-z]*1*[0-9]*[ps][sd]' -e 'fn*m\(add\|sub\|la\|ls\)[[:space:]]')
+    if [ "$found" -eq 0 ]; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL $1: $found fused multiply-adds in libawt.a"
+    fi
 }
 
 all_bits() {
+    bits_tests="tests/main.c tests/unit/test_golden.c tests/unit/test_styles.c tests/unit/fixture.c"
+    bits_core=$(echo core/base/*.c core/groom/*.c core/sim/*.c)
     for flags in -O0 -O1 -O2 -O3 "-O3 -march=native"; do
-        same_bits "gcc $flags" "" CC=gcc CXX=gcc CFLAGS="$flags"
+        same_bits "gcc $flags" "" CC=gcc CXX=g++ CFLAGS="$flags" CXXFLAGS="$flags"
     done
     for flags in -O0 -O2 -O3 "-O3 -march=native"; do
-        same_bits "clang $flags" "" CC=clang CXX=clang CFLAGS="$flags"
+        same_bits "clang $flags" "" CC=clang CXX=clang++ CFLAGS="$flags" CXXFLAGS="$flags"
     done
+    # Without frames: they need libraries in C++ of that machine.
     if command -v aarch64-linux-gnu-gcc >/dev/null 2>&1 && command -v qemu-aarch64 >/dev/null 2>&1; then
-        same_bits "aarch64 gcc -O2, under qemu" qemu-aarch64 CC=aarch64-linux-gnu-gcc CXX=aarch64-linux-gnu-gcc LDFLAGS=-static
+        objdump=aarch64-linux-gnu-objdump
+        same_bits "aarch64 gcc -O2, under qemu" qemu-aarch64 CC=aarch64-linux-gnu-gcc CXX=aarch64-linux-gnu-gcc LDFLAGS=-static \
+            SRC_unit="$bits_tests" SRC_core="$bits_core" LDLIBS_ALL="-lm -pthread"
     else
         echo "skip: no aarch64 compiler or no qemu-aarch64 here"
         skipped=$((skipped + 1))

@@ -2,6 +2,7 @@
 #include "fixture.h"
 
 #include "base/assert.h"
+#include "base/trig.h"
 #include "sim/state.h"
 
 #include <string.h>
@@ -87,4 +88,17 @@ void fixture_advance(awt_forest *forest, const motion *clip, int64_t time_us, co
     awt_motion pose = fixture_motion(clip, time_us, at, velocity);
     ASSERT(awt_forest_move(forest, &pose, NULL) == AWT_OK);
     ASSERT(awt_forest_advance(forest, time_us, stats, NULL) == AWT_OK);
+}
+
+awt_motion fixture_bow(int64_t time_us)
+{
+    double t = (double)time_us * 1e-6, sine, cosine, turn_sine, turn_cosine;
+    trig_sin_cos(5.0 * t, &sine, &cosine);
+    trig_sin_cos(0.5 * sine, &turn_sine, &turn_cosine);
+    awt_motion m = {.time_us = time_us};
+    m.head.position[2] = m.body.position[2] = 0.3 * sine;
+    m.head.position[1] = m.body.position[1] = 0.1 * (cosine - 1.0);
+    m.head.orientation[0] = m.body.orientation[0] = turn_sine;
+    m.head.orientation[3] = m.body.orientation[3] = turn_cosine;
+    return m;
 }

@@ -22,4 +22,7 @@ const motion *fixture_clip(const char *name);
 void fixture_advance(awt_forest *forest, const motion *clip, int64_t time_us, const double at[3],
                      const double velocity[3], awt_step_stats *stats);
 
+/* A bow and a shake of the head, from our own sine: the same bits whatever the machine's. */
+awt_motion fixture_bow(int64_t time_us);
+
 #endif

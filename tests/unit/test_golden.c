@@ -3,23 +3,15 @@
 #include "check.h"
 #include "fixture.h"
 
-#include "base/trig.h"
-
 /* Requests of a bow, and of the rest after it: two sub-steps each, and not of 10 ms. */
 enum { BOW_REQUESTS = 200, REST_REQUESTS = 350, REQUEST_US = 12000 };
 
-/* A bow and a shake of the head, from our own sine, that stops where it is. */
+/* The bow that stops where it is. */
 static awt_motion bow(int64_t time_us)
 {
     const int64_t bowing_us = (int64_t)BOW_REQUESTS * REQUEST_US;
-    double t = (double)(time_us < bowing_us ? time_us : bowing_us) * 1e-6, sine, cosine, turn_sine, turn_cosine;
-    trig_sin_cos(5.0 * t, &sine, &cosine);
-    trig_sin_cos(0.5 * sine, &turn_sine, &turn_cosine);
-    awt_motion m = {.time_us = time_us};
-    m.head.position[2] = m.body.position[2] = 0.3 * sine;
-    m.head.position[1] = m.body.position[1] = 0.1 * (cosine - 1.0);
-    m.head.orientation[0] = m.body.orientation[0] = turn_sine;
-    m.head.orientation[3] = m.body.orientation[3] = turn_cosine;
+    awt_motion m = fixture_bow(time_us < bowing_us ? time_us : bowing_us);
+    m.time_us = time_us;
     return m;
 }
 
