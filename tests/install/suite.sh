@@ -13,7 +13,7 @@ ${MAKE:-make} -s install config="$(basename "$build")" prefix="$place" > "$place
 seen() { nm -g --defined-only "$@" | awk 'NF == 3 && $2 != "A" { sub(/@.*/, "", $3); print $3 }'; }
 for kind in a so; do
     flag=$([ $kind = so ] && echo -D || echo -g)
-    others=$(seen "$flag" "$place/lib/libawtclient.$kind" | grep -vE '^(awt(client|session|link|frames|clock|pace|space|write)|proto)_' || true)
+    others=$(seen "$flag" "$place/lib/libawtclient.$kind" | grep -vE '^(awt(client|hair|session|link|frames|clock|pace|space|write)|proto)_' || true)
     [ -z "$others" ] || fail "libawtclient.$kind shows $others"
 done
 
@@ -36,4 +36,16 @@ done
 ${CC:-cc} -std=c17 -o "$place/simulation" tests/install/simulation.c $(flags awt)
 LD_LIBRARY_PATH="$place/lib" "$place/simulation" > /dev/null || fail 'the program with libawt'
 echo 'ok   programs, libraries and headers work where they were put, in C and C++'
-echo '1 passed, 0 failed, 0 skipped'
+
+# The README's example in C, as it stands there, before a daemon.
+awk '/^    #include <awtclient.h>/ { on = 1 } on && !/^    / { exit } on { print substr($0, 5) }' README.md > "$place/hair.c"
+work=$place build=$place/bin
+. tests/start_awtd.sh
+trap 'kill "$daemon"; wait "$daemon" || true; rm -rf "$place"' EXIT
+[ -n "$address" ] || fail 'awtd does not listen'
+${CC:-cc} -std=c17 -Wall -Wextra -Werror -o "$place/hair" "$place/hair.c" $(flags awtclient) -lm
+LD_LIBRARY_PATH="$place/lib" "$place/hair" "$address" "$place/state/token" > "$place/said" || fail 'the example of the README'
+[ "$(grep -c '^2000 strands; the first ends at x = -\{0,1\}[0-9.]* m$' "$place/said")" -eq 60 ] || fail "the example of the README said $(tail -n 2 "$place/said")"
+[ "$(sort -u "$place/said" | wc -l)" -gt 10 ] || fail 'the hair of the example does not move'
+echo 'ok   the example of the README in C'
+echo '2 passed, 0 failed, 0 skipped'

@@ -206,18 +206,13 @@ await test('viewer_says_that_a_server_lies', async () => {
 await test('viewer_example_of_the_readme_runs', async () => {
   const pages = {}, elsewhere = await serveElsewhere(pages, () => listed), listed = await startGateway(awtd.port, '--origin', elsewhere.origin);
   const [, code] = /\n((?: {4}.*\n)*? {4}.*AwtHair[^]*?\n)\n/.exec(readFileSync(join(top, 'README.md'), 'utf8')), page = await browser.newPage();
-  const own = code.replace("'three'", "'/three/three.module.min.js'").replace('127.0.0.1:8080', `127.0.0.1:${listed.port}`)
-    .replace("style: 'long'", "style: 'long', strands: 300"); /* drawn in software here */
-  const before = `import * as THREE from '/three/three.module.min.js';
-    const renderer = new THREE.WebGLRenderer(), scene = new THREE.Scene(), camera = new THREE.PerspectiveCamera(40, 1, 0.1, 10);
-    camera.position.set(0, 1.6, 1.2);
-    Object.assign(globalThis, { renderer, scene, camera, token: '${listed.tokens.drive}' });`;
-  Object.assign(pages, { '/example.html': '<script type="module" src="/before.js"></script><script type="module" src="/example.js"></script>',
-    '/before.js': before, '/example.js': `${own}\nglobalThis.hair = hair;` });
+  const names = JSON.stringify({ imports: { three: '/three/three.module.min.js' } }); /* as a bundler would: the code stays as it is given */
+  Object.assign(pages, { '/example.html': `<script type="importmap">${names}</script><body><script type="module" src="/example.js"></script>`,
+    '/example.js': `${code}\nglobalThis.hair = hair;` });
   const heard = [];
   page.on('console', (message) => heard.push(message.text()));
   page.on('pageerror', (error) => heard.push(error.message));
-  await page.goto(`${elsewhere.origin}/example.html`);
+  await page.goto(`${elsewhere.origin}/example.html#ws://127.0.0.1:${listed.port}/awt%20${listed.tokens.drive}`);
   await until(() => page.evaluate(() => globalThis.hair?.stats.frames > 3 && hair.stats.strands > 0 && Math.abs(hair.object.quaternion.y) > 0.01), () => `hair that turns: ${heard.join('; ')}`);
   await page.close();
   await listed.stop();
