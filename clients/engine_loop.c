@@ -4,34 +4,42 @@
  * be (drive), takes what has come (listen), has it decoded (decode; a game gives that to its job system), and shows
  * hair of now, mixed from the frames that are there (show). What is sent is ahead of the game by `lead`: as long as a
  * frame needed lately from its request until it could be shown. Where the head will be by then is predicted from its
- * velocity; the difference of what is shown from the true motion is what that costs, and is printed.
+ * velocity (engine_head.h); the difference of what is shown from the true motion is what that costs, and is printed
+ * (engine_measure.h).
  *
- * Simulated time is the loop's own: 0 at its beginning, one second a second. */
+ * Hair is made before the game begins, and again where a restarted daemon has lost it; a lost connection comes back by
+ * itself (awtsession.h), and the hair stands meanwhile.
+ *
+ * Simulated time is the game's own, one second a second. It stands at 0 while the game loads. */
 #include "awtclock.h"
 #include "awtframes.h"
-#include "awtlink.h"
-#include "jsonout.h"
+#include "awtsession.h"
+#include "engine_head.h"
+#include "engine_measure.h"
 
 #include "base/options.h"
 #include "base/version.h"
 
-#include <inttypes.h>
-#include <math.h>
 #include <poll.h>
 #include <stdio.h>
-#include <string.h>
+#include <time.h>
 
 enum {
     LOOP_STREAM_RATE = 60, /* simulated steps, and frames, a second */
     LOOP_SENT = 64,        /* requests remembered */
+    LOOP_NEEDED = 256,     /* and how long so many needed */
     LOOP_ASKING = 15,      /* requests under way; more would only make a late daemon later */
-    LOOP_KIND = 1,         /* strands, with deltas */
+    LOOP_CREDIT = 2,       /* at first */
+    LOOP_KIND = 2,         /* guides, with deltas: the fewest bytes; strands are made of them where they are decoded */
     LOOP_NODES = 3         /* what a request answers: the fewest bytes */
 };
+#define LOOP_STEP_US (1000000 / LOOP_STREAM_RATE)
 #define LOOP_EXTRAPOLATE_US 20000
 #define LOOP_TARGET_AGE_US 250000
 #define LOOP_MARGIN_US 3000
-#define LOOP_LEAST_LEAD_US 20000
+#define LOOP_LEAST_NEEDED_US 20000
+#define LOOP_PATIENCE_MS 60000
+#define LOOP_LOADING_US 60000000
 
 typedef struct loop_plan {
     const char *address, *token_file, *style, *json;
@@ -40,250 +48,209 @@ typedef struct loop_plan {
 } loop_plan;
 
 typedef struct loop_sent {
-    int64_t time_us, sent_us; /* asked for, and when, both simulated */
+    int64_t time_us, sent_us; /* simulated time asked for; the machine's clock then */
 } loop_sent;
 
 typedef struct loop {
     const loop_plan *plan;
-    awtlink *link;
+    awtsession *session;
     awtframes *frames;
     awtclock clock;
-    int64_t began_us; /* the machine's clock when simulated time was 0 */
-    uint64_t forest, subscribe_request, subscription;
-    uint32_t under_way; /* credit that the daemon has */
+    bool playing;                                     /* time goes */
+    int64_t began_us;                                 /* the machine's clock when simulated time was 0 */
+    uint64_t forest, subscribe_request, subscription; /* 0: not there yet */
+    uint32_t under_way;                               /* credit that the daemon has */
     /* driving */
     uint32_t sequence, asking;
-    int64_t next_send_us, asked_us, lead_us;
+    int64_t next_send_us, first_us, asked_us, lead_us; /* first asked for; last asked for */
     loop_sent sent[LOOP_SENT];
-    int64_t needed_us[LOOP_SENT]; /* from request to frame, lately */
+    int64_t needed_us[LOOP_NEEDED]; /* from request to frame, lately */
     uint32_t needed_count;
-    /* what is told at the end */
-    uint64_t ticks, shown, backwards, received, undecoded, busy;
-    uint64_t stall, longest_stall; /* ticks that stood still, in a row */
-    int64_t last_shown_us;
-    double off_sum_m, off_greatest_m, age_sum_us, age_greatest_us, bytes;
+    engine_measure measure;
 } loop;
 
 static int64_t now_us(const loop *l)
 {
-    return awtclient_now_us() - l->began_us;
+    return l->playing ? awtclient_now_us() - l->began_us : 0;
 }
 
-/* ---- the head ------------------------------------------------------------------------------------------------- */
-
-/* Where the head truly is: it sways and nods. */
-static proto_pose true_head(int64_t time_us)
+static bool failed(const char *why)
 {
-    const double t = 1e-6 * (double)time_us, nod = 0.3 * sin(2.1 * t);
-    proto_pose pose = {.position = {0.15 * sin(1.7 * t), 0.03 * sin(3.1 * t), 0.05 * sin(1.1 * t)}};
-    pose.orientation[0] = sin(nod / 2);
-    pose.orientation[3] = cos(nod / 2);
-    return pose;
-}
-
-/* Where a game at `time_us`, which knows the motion until then, expects the head at `at_us`. */
-static proto_pose predicted_head(int64_t time_us, int64_t at_us)
-{
-    const int64_t before_us = time_us - 1000000 / LOOP_STREAM_RATE;
-    const double share = (double)(at_us - time_us) / (double)(time_us - before_us);
-    const proto_pose now = true_head(time_us), before = true_head(before_us);
-    proto_pose out = now;
-    double square = 0;
-    for (int i = 0; i < 3; i++) {
-        out.position[i] += share * (now.position[i] - before.position[i]);
-    }
-    for (int i = 0; i < 4; i++) {
-        out.orientation[i] += share * (now.orientation[i] - before.orientation[i]);
-        square += out.orientation[i] * out.orientation[i];
-    }
-    for (int i = 0; i < 4; i++) {
-        out.orientation[i] /= sqrt(square);
-    }
-    return out;
-}
-
-/* ---- connecting ------------------------------------------------------------------------------------------------- */
-
-static bool failed(const char *what, const awtclient_error *error)
-{
-    fprintf(stderr, "engine_loop: %s%s\n", what, error->text);
+    fprintf(stderr, "engine_loop: %s\n", why);
     return false;
 }
 
-/* Pumps, and waits for the link before it, but not beyond `until_us` of the machine's clock. */
-static bool turn(loop *l, int64_t until_us)
-{
-    awtclient_error error;
-    const unsigned wanted = awtlink_wanted(l->link);
-    const int64_t left_us = until_us - awtclient_now_us();
-    struct pollfd entry = {.fd = awtlink_descriptor(l->link)};
-    entry.events = (short)((wanted & AWTLINK_READ ? POLLIN : 0) | (wanted & AWTLINK_WRITE ? POLLOUT : 0));
-    poll(&entry, 1, awtlink_pending(l->link) || left_us <= 0 ? 0 : (int)((left_us + 999) / 1000));
-    return awtlink_pump(l->link, awtclient_now_us(), &error) || failed("", &error);
-}
-
-/* Before the loop begins there is time to wait for an answer. */
-static bool ask(loop *l, proto_message *request, proto_message *answer)
-{
-    const int64_t until_us = awtclient_now_us() + 60000000;
-    awtclient_error error = {.text = "no answer within a minute"};
-    if (!awtlink_queue(l->link, request, &error)) {
-        return failed("", &error);
-    }
-    while (awtclient_now_us() < until_us) {
-        while (awtlink_next(l->link, answer, &error)) {
-            if (answer->request == request->request && answer->type == PROTO_ERROR) {
-                proto_str_copy(answer->as.error.text, error.text, sizeof error.text);
-                return failed("", &error);
-            }
-            if (answer->request == request->request) {
-                return true;
-            }
-        }
-        if (!turn(l, until_us)) {
-            return false;
-        }
-    }
-    return failed("", &error);
-}
-
-static bool open_link(loop *l)
-{
-    awtclient_error error;
-    const awtclient_options options = {
-        .address = l->plan->address, .token_file = l->plan->token_file, .name = "engine_loop " AWTD_VERSION};
-    l->link = awtlink_open(&options, awtclient_now_us(), &error);
-    if (!l->link) {
-        return failed("", &error);
-    }
-    while (!awtlink_ready(l->link)) {
-        if (!turn(l, awtlink_deadline_us(l->link))) {
-            return false;
-        }
-    }
-    return true;
-}
-
-static bool make_hair(loop *l)
-{
-    static proto_message request, answer;
-    request = (proto_message){.type = PROTO_CREATE};
-    request.as.create.style = proto_str_of(l->plan->style);
-    request.as.create.seed = 1;
-    request.as.create.strands = (uint32_t)l->plan->strands;
-    request.as.create.head = true_head(0);
-    request.as.create.body.orientation[3] = 1;
-    if (!ask(l, &request, &answer)) {
-        return false;
-    }
-    l->forest = answer.as.create_reply.forest;
-    request = (proto_message){.type = PROTO_SUBSCRIBE};
-    request.as.subscribe = (struct proto_subscribe){.forest = l->forest, .kind = LOOP_KIND, .credit = 2, .deltas = 1};
-    l->under_way = 2;
-    if (!ask(l, &request, &answer)) {
-        return false;
-    }
-    l->subscribe_request = request.request;
-    l->subscription = answer.as.subscribe_reply.subscription;
-    return true;
-}
-
-/* ---- a tick ----------------------------------------------------------------------------------------------------- */
-
-/* What is refused because too much waits to be sent is left out: the next motion says more. */
+/* What is refused because too much waits to be sent, or nobody is there, is left out: the next motion says more. */
 static bool send(loop *l, proto_message *message)
 {
     awtclient_error error;
-    return awtlink_queue(l->link, message, &error) || error.code == AWTCLIENT_FULL || failed("", &error);
+    return awtsession_queue(l->session, message, &error) || error.code == AWTCLIENT_FULL || failed(error.text);
 }
 
-/* How far ahead to ask, so that the frame is there when its time is shown. It shrinks slowly, so as not to swing. */
+/* ---- hair ----------------------------------------------------------------------------------------------------- */
+
+static bool make_hair(loop *l)
+{
+    proto_message create = {.type = PROTO_CREATE};
+    const int64_t time_us = now_us(l) > 0 ? now_us(l) + l->lead_us : 0;
+    create.as.create.style = proto_str_of(l->plan->style);
+    create.as.create.seed = 1;
+    create.as.create.strands = (uint32_t)l->plan->strands;
+    create.as.create.time_us = time_us;
+    create.as.create.head = engine_predicted_head(now_us(l), time_us);
+    create.as.create.body.orientation[3] = 1;
+    l->asked_us = time_us;
+    return send(l, &create);
+}
+
+/* What strands are made with; it stays the same as long as the hair. */
+static bool ask_binding(loop *l)
+{
+    proto_message binding = {.type = PROTO_BINDING};
+    binding.as.binding.forest = l->forest;
+    return send(l, &binding);
+}
+
+static bool subscribe(loop *l)
+{
+    proto_message subscribe = {.type = PROTO_SUBSCRIBE}, ping = {.type = PROTO_PING};
+    subscribe.as.subscribe =
+        (struct proto_subscribe){.forest = l->forest, .kind = LOOP_KIND, .credit = LOOP_CREDIT, .deltas = 1};
+    ping.as.ping.sent_us = awtclient_now_us();
+    l->under_way = LOOP_CREDIT;
+    const bool good = send(l, &ping) && send(l, &subscribe);
+    l->subscribe_request = subscribe.request;
+    return good;
+}
+
+/* The connection is there, for the first time or again. */
+static bool opened(loop *l)
+{
+    uint32_t count;
+    const awtsession_forest *forests = awtsession_forests(l->session, &count);
+    l->subscription = 0;
+    l->asking = 0;
+    l->forest = count > 0 && forests[count - 1].open ? forests[count - 1].forest : 0;
+    return l->forest != 0 ? ask_binding(l) : make_hair(l);
+}
+
+/* ---- a tick --------------------------------------------------------------------------------------------------- */
+
+/* How far ahead to ask, so that the frame is there when its time is shown: by what the slowest of late needed, but not
+ * so far that those which come quickly are too many to be kept until then. It shrinks slowly, so as not to swing. */
 static void choose_lead(loop *l)
 {
-    int64_t most_us = LOOP_LEAST_LEAD_US;
-    for (uint32_t i = 0; i < LOOP_SENT && i < l->needed_count; i++) {
+    int64_t most_us = LOOP_LEAST_NEEDED_US, least_us = LOOP_TARGET_AGE_US;
+    for (uint32_t i = 0; i < LOOP_NEEDED && i < l->needed_count; i++) {
         most_us = l->needed_us[i] > most_us ? l->needed_us[i] : most_us;
+        least_us = l->needed_us[i] < least_us ? l->needed_us[i] : least_us;
     }
-    most_us += 1000000 / LOOP_STREAM_RATE + LOOP_MARGIN_US;
+    const int64_t greatest_us = least_us + (AWTFRAMES_KEPT - 2) * LOOP_STEP_US;
+    most_us += LOOP_STEP_US + LOOP_MARGIN_US;
+    most_us = most_us < greatest_us ? most_us : greatest_us;
     most_us = most_us < LOOP_TARGET_AGE_US ? most_us : LOOP_TARGET_AGE_US;
     l->lead_us = most_us > l->lead_us ? most_us : l->lead_us - (l->lead_us - most_us) / 64;
 }
 
-static bool drive(loop *l, int64_t time_us)
+/* Sends where the head will be at `at_us`, and asks for the hair of then. */
+static bool ask_for(loop *l, int64_t time_us, int64_t at_us)
 {
-    if (time_us < l->next_send_us) {
-        return true;
-    }
-    l->next_send_us += 1000000 / LOOP_STREAM_RATE;
-    choose_lead(l);
-    const int64_t at_us = time_us + l->lead_us;
-    if (at_us <= l->asked_us) {
-        return true;
-    }
     proto_message motion = {.type = PROTO_MOTION}, query = {.type = PROTO_QUERY}, ping = {.type = PROTO_PING};
     motion.as.motion = (struct proto_motion){.forest = l->forest, .sequence = ++l->sequence, .time_us = at_us};
-    motion.as.motion.head = predicted_head(time_us, at_us);
+    motion.as.motion.head = engine_predicted_head(time_us, at_us);
     motion.as.motion.body.orientation[3] = 1;
     query.as.query = (struct proto_query){.forest = l->forest, .time_us = at_us, .kind = LOOP_NODES};
     l->asked_us = at_us;
+    l->first_us = l->first_us != 0 ? l->first_us : at_us;
     if (l->asking >= LOOP_ASKING) { /* the poses are worth sending all the same: the hair will follow them all */
         return send(l, &motion);
     }
     l->asking++;
-    l->sent[l->sequence % LOOP_SENT] = (loop_sent){at_us, time_us};
+    l->sent[l->sequence % LOOP_SENT] = (loop_sent){at_us, awtclient_now_us()};
     ping.as.ping.sent_us = awtclient_now_us();
-    return send(l, &motion) && send(l, &query) && (l->sequence % LOOP_STREAM_RATE != 1 || send(l, &ping));
+    return send(l, &motion) && send(l, &query) && (l->sequence % LOOP_STREAM_RATE != 0 || send(l, &ping));
 }
 
-static void note_frame(loop *l, const struct proto_frame *frame)
+static bool drive(loop *l, int64_t time_us)
 {
-    const double age_us = (double)awtclock_age_us(&l->clock, frame->age_us);
-    l->received++;
-    l->under_way -= l->under_way > 0;
-    l->bytes += (double)frame->glb.length;
-    l->age_sum_us += age_us;
-    l->age_greatest_us = fmax(l->age_greatest_us, age_us);
+    if (time_us < l->next_send_us || l->subscription == 0) {
+        return true;
+    }
+    do { /* steps that a late tick has missed are left out */
+        l->next_send_us += LOOP_STEP_US;
+    } while (l->next_send_us <= time_us);
+    choose_lead(l);
+    const int64_t at_us = time_us + l->lead_us;
+    return at_us <= l->asked_us || ask_for(l, time_us, at_us);
 }
 
 static bool take(loop *l, const proto_message *message)
 {
     awtclient_error error = {.text = ""};
     if (message->type == PROTO_FRAME && message->request == l->subscribe_request) {
-        note_frame(l, &message->as.frame);
-        return awtframes_take(l->frames, &message->as.frame, &error) || failed("", &error);
+        engine_measure_frame(&l->measure, &message->as.frame, &l->clock);
+        l->under_way -= l->under_way > 0;
+        return awtframes_take(l->frames, &message->as.frame, &error) || failed(error.text);
     }
     l->asking -= l->asking > 0 && (message->type == PROTO_FRAME || message->type == PROTO_ERROR);
-    if (message->type == PROTO_PONG) {
-        const struct proto_pong *pong = &message->as.pong;
-        awtclock_add(&l->clock, pong->sent_us, pong->received_us, pong->answered_us, awtlink_received_us(l->link));
-    }
-    if (message->type == PROTO_ERROR && message->as.error.retry != 1) {
+    switch (message->type) {
+    case PROTO_CREATE_REPLY:
+        l->forest = message->as.create_reply.forest;
+        return ask_binding(l);
+    case PROTO_BINDING_REPLY:
+        return (awtframes_bind(l->frames, message->as.binding_reply.binding.bytes,
+                               message->as.binding_reply.binding.length, &error) ||
+                failed(error.text)) &&
+               subscribe(l);
+    case PROTO_SUBSCRIBE_REPLY:
+        l->subscription = message->as.subscribe_reply.subscription;
+        return true;
+    case PROTO_PONG:
+        awtclock_add(&l->clock, message->as.pong.sent_us, message->as.pong.received_us, message->as.pong.answered_us,
+                     awtlink_received_us(awtsession_link(l->session)));
+        return true;
+    case PROTO_ERROR:
         proto_str_copy(message->as.error.text, error.text, sizeof error.text);
-        return failed("", &error);
+        l->measure.busy++;
+        return message->as.error.retry == 1 || failed(error.text);
+    default:
+        return true;
     }
-    l->busy += message->type == PROTO_ERROR;
-    return true;
 }
 
 static bool listen(loop *l)
 {
     static proto_message message;
     awtclient_error error;
-    while (awtlink_next(l->link, &message, &error)) {
-        if (!take(l, &message)) {
-            return false;
+    for (;;) {
+        switch (awtsession_next(l->session, &message, &error)) {
+        case AWTSESSION_NOTHING:
+            return true;
+        case AWTSESSION_LOST:
+            l->measure.losses++;
+            l->subscription = 0;
+            fprintf(stderr, "engine_loop: %s; trying again\n", error.text);
+            break;
+        case AWTSESSION_OPENED:
+            if (!opened(l)) {
+                return false;
+            }
+            break;
+        case AWTSESSION_MESSAGE:
+            if (!take(l, &message)) {
+                return false;
+            }
         }
     }
-    return error.code == 0 || failed("", &error);
 }
 
-/* How long the frame of that time needed from its request until now. */
-static void note_needed(loop *l, int64_t time_us)
+/* How long the newest frame needed from its request until now. */
+static void note_needed(loop *l)
 {
     const int64_t newest_us = awtframes_newest_us(l->frames);
     for (int i = 0; i < LOOP_SENT; i++) {
         if (l->sent[i].time_us == newest_us) {
-            l->needed_us[l->needed_count++ % LOOP_SENT] = time_us - l->sent[i].sent_us;
+            l->needed_us[l->needed_count++ % LOOP_NEEDED] = awtclient_now_us() - l->sent[i].sent_us;
         }
     }
 }
@@ -292,7 +259,7 @@ static void note_needed(loop *l, int64_t time_us)
 static bool give_credit(loop *l)
 {
     const uint32_t window = awtclock_credit(&l->clock, LOOP_STREAM_RATE, LOOP_TARGET_AGE_US);
-    if (l->under_way >= window) {
+    if (l->under_way >= window || l->subscription == 0) {
         return true;
     }
     proto_message credit = {.type = PROTO_CREDIT};
@@ -303,129 +270,106 @@ static bool give_credit(loop *l)
 }
 
 /* A game gives awtframes_decode to its job system, and calls awtframes_end in the tick after it is done. */
-static bool decode(loop *l, int64_t time_us)
+static bool decode(loop *l)
 {
     awtclient_error error;
     bool any = false;
     while (awtframes_begin(l->frames)) {
         awtframes_decode(l->frames);
         if (!awtframes_end(l->frames, &error)) {
-            l->undecoded++; /* the daemon's next frame is against one that was acknowledged, or whole */
+            l->measure.undecoded++; /* the daemon's next frame is against one that was acknowledged, or whole */
             continue;
         }
-        note_needed(l, time_us);
+        note_needed(l);
         any = true;
     }
     return !any || give_credit(l);
-}
-
-static void compare(loop *l, const awtframes_shown *shown, int64_t time_us)
-{
-    const proto_pose truth = true_head(time_us);
-    double square = 0;
-    for (int i = 0; i < 3; i++) {
-        const double off = shown->head.position[i] - truth.position[i];
-        square += off * off;
-    }
-    l->off_sum_m += sqrt(square);
-    l->off_greatest_m = fmax(l->off_greatest_m, sqrt(square));
 }
 
 /* Here a game hands shown.positions to its renderer (awtwrite.h), under the head's true pose. */
 static void show(loop *l, int64_t time_us)
 {
     awtframes_shown shown;
-    if (!awtframes_show(l->frames, time_us, &shown)) {
-        return;
+    const proto_pose truth = engine_true_head(time_us);
+    if (awtframes_show(l->frames, time_us, &shown)) {
+        engine_measure_shown(&l->measure, &shown, time_us, &truth);
     }
-    l->backwards += l->shown > 0 && shown.time_us < l->last_shown_us;
-    l->stall = shown.way == AWTFRAMES_HELD && time_us > l->last_shown_us + LOOP_EXTRAPOLATE_US ? l->stall + 1 : 0;
-    l->longest_stall = l->stall > l->longest_stall ? l->stall : l->longest_stall;
-    l->last_shown_us = shown.time_us;
-    l->shown++;
-    compare(l, &shown, time_us);
 }
 
-static bool run(loop *l)
+/* ---- the loop ------------------------------------------------------------------------------------------------- */
+
+/* Waits for the daemon, but not beyond `until_us` of the machine's clock, and takes what came. poll knows whole
+ * milliseconds only: the last of them is slept without it. */
+static bool wait_for(loop *l, int64_t until_us)
 {
-    const uint64_t ticks = (uint64_t)(l->plan->seconds * (double)l->plan->rate);
-    l->began_us = awtclient_now_us();
-    l->lead_us = LOOP_LEAST_LEAD_US;
-    for (; l->ticks < ticks; l->ticks++) {
-        const int64_t due_us = l->began_us + (int64_t)(l->ticks * 1000000 / (uint64_t)l->plan->rate);
-        do { /* what is left of the tick belongs to the link */
-            if (!turn(l, due_us) || !listen(l) || !decode(l, now_us(l))) {
-                return false;
-            }
-        } while (awtclient_now_us() < due_us);
-        const int64_t time_us = now_us(l);
-        if (!drive(l, time_us)) {
+    awtclient_error error;
+    const int64_t due_us = awtsession_deadline_us(l->session), end_us = until_us < due_us ? until_us : due_us;
+    const int64_t left_us = awtsession_pending(l->session) ? 0 : end_us - awtclient_now_us();
+    const unsigned wanted = awtsession_wanted(l->session);
+    struct pollfd entry = {.fd = awtsession_descriptor(l->session)};
+    entry.events = (short)((wanted & AWTLINK_READ ? POLLIN : 0) | (wanted & AWTLINK_WRITE ? POLLOUT : 0));
+    if (poll(&entry, 1, left_us > 0 ? (int)(left_us / 1000) : 0) == 0 && left_us > 0 && left_us < 1000) {
+        nanosleep(&(struct timespec){.tv_nsec = (long)left_us * 1000}, NULL);
+    }
+    return (awtsession_pump(l->session, awtclient_now_us(), &error) || failed(error.text)) && listen(l) && decode(l);
+}
+
+/* A tick, due at a time of the machine's clock: until then what is left belongs to the daemon. */
+static bool tick(loop *l, int64_t due_us)
+{
+    do {
+        if (!wait_for(l, due_us)) {
             return false;
         }
-        show(l, time_us);
-    }
-    return true;
+    } while (awtclient_now_us() < due_us);
+    return drive(l, now_us(l));
 }
 
-/* ---- what is told ----------------------------------------------------------------------------------------------- */
-
-static void write_json(const loop *l, FILE *file)
+static int64_t due_us(const loop *l, uint64_t number)
 {
-    uint64_t ways[3];
-    jsonout j = jsonout_begin(file);
-    awtframes_counts(l->frames, ways);
-    jsonout_object(&j, NULL);
-    jsonout_unsigned(&j, "ticks", l->ticks);
-    jsonout_unsigned(&j, "shown", l->shown);
-    jsonout_unsigned(&j, "between", ways[AWTFRAMES_BETWEEN]);
-    jsonout_unsigned(&j, "beyond", ways[AWTFRAMES_BEYOND]);
-    jsonout_unsigned(&j, "held", ways[AWTFRAMES_HELD]);
-    jsonout_unsigned(&j, "longest_stall_ticks", l->longest_stall);
-    jsonout_unsigned(&j, "backwards", l->backwards);
-    jsonout_unsigned(&j, "frames", l->received);
-    jsonout_unsigned(&j, "undecoded", l->undecoded);
-    jsonout_unsigned(&j, "busy", l->busy);
-    jsonout_real(&j, "bytes", l->bytes);
-    jsonout_real(&j, "off_mean_m", l->shown > 0 ? l->off_sum_m / (double)l->shown : NAN);
-    jsonout_real(&j, "off_greatest_m", l->off_greatest_m);
-    jsonout_real(&j, "age_mean_us", l->received > 0 ? l->age_sum_us / (double)l->received : NAN);
-    jsonout_real(&j, "age_greatest_us", l->age_greatest_us);
-    jsonout_integer(&j, "round_us", awtclock_round_us(&l->clock));
-    jsonout_integer(&j, "lead_us", l->lead_us);
-    jsonout_close(&j);
-    jsonout_done(&j);
+    return l->began_us + (int64_t)(number * 1000000 / (uint64_t)l->plan->rate);
 }
 
-static void write_text(const loop *l)
+/* The loading screen: until there is hair, and until its frames have come up with the game's time. The number of the
+ * tick that is the first to be shown; 0: it failed. */
+static uint64_t load(loop *l)
 {
-    uint64_t ways[3];
-    awtframes_counts(l->frames, ways);
-    printf("%" PRIu64 " ticks at %lld a second: %" PRIu64 " shown between frames, %" PRIu64 " beyond, %" PRIu64
-           " held; longest stall %" PRIu64 " ticks\n",
-           l->ticks, l->plan->rate, ways[AWTFRAMES_BETWEEN], ways[AWTFRAMES_BEYOND], ways[AWTFRAMES_HELD],
-           l->longest_stall);
-    printf("%" PRIu64 " frames, %.1f KB each; age %.1f ms, at most %.1f; round %.1f ms; asked for %.1f ms ahead\n",
-           l->received, l->received > 0 ? l->bytes / 1000 / (double)l->received : 0,
-           l->received > 0 ? l->age_sum_us / 1000 / (double)l->received : 0, l->age_greatest_us / 1000,
-           (double)awtclock_round_us(&l->clock) / 1000, (double)l->lead_us / 1000);
-    printf("the head shown was off the true one by %.2f mm, at most %.2f: the prediction's error\n",
-           l->shown > 0 ? l->off_sum_m * 1000 / (double)l->shown : 0, l->off_greatest_m * 1000);
+    const int64_t until_us = awtclient_now_us() + LOOP_LOADING_US;
+    while ((l->subscription == 0 || l->clock.count == 0) && awtclient_now_us() < until_us) {
+        if (!wait_for(l, until_us)) {
+            return 0;
+        }
+    }
+    l->began_us = awtclient_now_us();
+    l->playing = true;
+    l->lead_us = LOOP_LEAST_NEEDED_US + 2 * awtclock_round_us(&l->clock);
+    for (uint64_t number = 1; awtclient_now_us() < until_us; number++) {
+        if (!tick(l, due_us(l, number))) {
+            return 0;
+        }
+        const int64_t newest_us = awtframes_newest_us(l->frames);
+        if (l->first_us != 0 && now_us(l) >= l->first_us && newest_us >= now_us(l)) {
+            return number + 1;
+        }
+    }
+    failed("no hair within a minute");
+    return 0;
 }
 
-static bool tell(const loop *l)
+static bool play(loop *l)
 {
-    const char *path = l->plan->json;
-    if (!path) {
-        write_text(l);
-        return true;
+    const uint64_t first = load(l);
+    const uint64_t last = first + (uint64_t)(l->plan->seconds * (double)l->plan->rate);
+    l->measure.tick_us = 1000000 / l->plan->rate;
+    for (uint64_t number = first; first != 0 && number < last; number++) {
+        if (!tick(l, due_us(l, number))) {
+            return false;
+        }
+        engine_measure_tick(&l->measure, due_us(l, number), awtclient_now_us());
+        show(l, now_us(l));
     }
-    FILE *file = strcmp(path, "-") == 0 ? stdout : fopen(path, "w");
-    if (!file) {
-        fprintf(stderr, "engine_loop: %s cannot be written\n", path);
-        return false;
-    }
-    write_json(l, file);
-    return (file == stdout ? fflush(file) : fclose(file)) == 0;
+    l->measure.lead_us = l->lead_us;
+    return first != 0;
 }
 
 int main(int argc, char **argv)
@@ -448,10 +392,16 @@ int main(int argc, char **argv)
         return code;
     }
     static loop l;
+    const awtsession_options where = {
+        .link = {.address = plan.address, .token_file = plan.token_file, .name = "engine_loop " AWTD_VERSION},
+        .patience_ms = LOOP_PATIENCE_MS};
+    awtclient_error error = {.text = "not enough memory"};
     l.plan = &plan;
     l.frames = awtframes_create(LOOP_EXTRAPOLATE_US);
-    const bool good = l.frames && open_link(&l) && make_hair(&l) && run(&l) && tell(&l);
-    awtlink_close(l.link);
+    l.session = l.frames ? awtsession_open(&where, awtclient_now_us(), &error) : NULL;
+    const bool good =
+        (l.session || failed(error.text)) && play(&l) && engine_measure_tell(&l.measure, l.frames, &l.clock, plan.json);
+    awtsession_close(l.session);
     awtframes_destroy(l.frames);
     return good ? 0 : 1;
 }

@@ -71,6 +71,20 @@ int64_t framemix_newest_us(const framemix *mix)
     return mix->count > 0 ? frame_at(mix, mix->count - 1)->time_us : INT64_MIN;
 }
 
+/* The oldest frame leaves; while it and the one after it are still ahead of what is shown, that one: then the hair
+ * goes on between the oldest and those far ahead, and does not jump to them. */
+static void drop_one(framemix *mix)
+{
+    if (frame_at(mix, 1)->time_us > mix->shown_us) {
+        mix_frame *oldest = &mix->frames[mix->first], *next = &mix->frames[(mix->first + 1) % AWTFRAMES_KEPT];
+        const mix_frame kept = *oldest;
+        *oldest = *next;
+        *next = kept;
+    }
+    mix->first = (mix->first + 1) % AWTFRAMES_KEPT;
+    mix->count--;
+}
+
 bool framemix_add(framemix *mix, const geom_strands *strands)
 {
     const bool same = mix->shown[0] && mix->strand_count == strands->strand_count &&
@@ -82,8 +96,7 @@ bool framemix_add(framemix *mix, const geom_strands *strands)
         return false;
     }
     if (mix->count == AWTFRAMES_KEPT) {
-        mix->first = (mix->first + 1) % AWTFRAMES_KEPT;
-        mix->count--;
+        drop_one(mix);
     }
     mix_frame *place = &mix->frames[(mix->first + mix->count) % AWTFRAMES_KEPT];
     place->time_us = strands->time_us;

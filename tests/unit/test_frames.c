@@ -85,6 +85,28 @@ TEST(frames_show_hair_of_any_time_between_them_and_a_little_beyond)
     framemix_fini(&mix);
 }
 
+TEST(frames_that_come_far_ahead_do_not_push_out_what_is_shown)
+{
+    framemix mix;
+    awtframes_shown shown;
+    framemix_init(&mix, 20000);
+    add(&mix, 0);
+    add(&mix, 16667);
+    CHECK(framemix_show(&mix, 8000, &shown));
+    for (int64_t n = 2; n < 20; n++) {
+        add(&mix, n * 16667);
+    }
+    for (int64_t time_us = 10000; time_us <= 19 * 16667; time_us += 7000) {
+        CHECK(framemix_show(&mix, time_us, &shown));
+        CHECK_INT(shown.way, AWTFRAMES_BETWEEN);
+        CHECK_INT(shown.time_us, time_us);
+        CHECK_NEAR(distance(&shown, time_us), 0, 1e-2); /* a straight line over up to 200 ms */
+    }
+    add(&mix, 20 * 16667); /* of those that were shown the oldest leaves */
+    CHECK_INT(framemix_newest_us(&mix), 20 * 16667);
+    framemix_fini(&mix);
+}
+
 TEST(frames_do_not_mix_across_a_jump_of_the_head_or_another_shape)
 {
     framemix mix;
