@@ -1,5 +1,6 @@
 // check_others.mjs FILE.glb...: what the loaders that people use make of awtd's frames: three.js (GLTFLoader, DRACOLoader),
-// gltf-transform, and tinygltf with Draco, where read_tinygltf has left FILE.glb.tinygltf.
+// gltf-transform, tinygltf with Draco, where read_tinygltf has left FILE.glb.tinygltf, and the command line of gltf-transform,
+// where suite.sh has left in FILE.glb.cli what it inspected and what it decoded.
 //
 // All must give the same positions to the bit, as many indices, the same pose; where FILE.glb.f32 stands beside the file (the
 // vertices before quantisation), each within half a quantisation step of it; where FILE.glb.extra.f32 does, the attributes
@@ -88,12 +89,25 @@ async function withTransform(io, bytes) {
   };
 }
 
+/** What gltf-transform's table of meshes says otherwise. */
+function inspected(file, { positions }) {
+  const lines = readFileSync(`${file}.cli/inspect.csv`, 'utf8').split('\n');
+  const names = lines.find((line) => line.startsWith('#,name,mode,'))?.split(',') ?? [];
+  const mesh = lines.find((line) => /^0,hair,(TRIANGLES|LINES),/.test(line))?.split(',') ?? [];
+  const vertices = Number(mesh[names.indexOf('vertices')]);
+  return vertices === positions.length / 3 ? [] : [`gltf-transform CLI finds ${vertices} vertices`];
+}
+
 async function checkFile(file, { three, io }) {
   const faults = [], bytes = readFileSync(file), { json } = splitGlb(bytes);
   const kind = json.nodes[0].extras.kind;
   const found = { three: await withThree(three, bytes), 'gltf-transform': await withTransform(io, bytes) };
   if (existsSync(`${file}.tinygltf`)) {
     found.tinygltf = { ...found.three, positions: floatsOf(`${file}.tinygltf`) };
+  }
+  if (existsSync(`${file}.cli`)) {
+    found['gltf-transform CLI'] = await withTransform(io, readFileSync(`${file}.cli/hair.glb`));
+    faults.push(...inspected(file, found.three));
   }
   const indices = json.meshes[0].primitives.reduce((sum, one) => sum + json.accessors[one.indices].count, 0);
   const pose = [...json.nodes[0].translation, ...json.nodes[0].rotation];
