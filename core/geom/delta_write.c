@@ -13,7 +13,6 @@
 #include "geom/quantised.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 struct delta_scratch {
     cloud_writer *writer;
@@ -74,20 +73,10 @@ size_t delta_scratch_bytes(const delta_scratch *scratch)
     return scratch->held + cloud_writer_bytes(scratch->writer);
 }
 
-/* Two checksums that agree prove nothing; numbers that do, do. */
-static bool is_same(const encoding *e, uint32_t index)
-{
-    const geom_quantised *base = e->def->base, *now = e->def->now;
-    const delta_shape shape = quantised_shape(e->layout, e->layout->patches[index].strands);
-    return base->checksums[index] == now->checksums[index] &&
-           memcmp(quantised_patch(base, e->layout, index), quantised_patch(now, e->layout, index),
-                  delta_count(&shape) * sizeof(uint16_t)) == 0;
-}
-
 static void list_changed(encoding *e)
 {
     for (uint32_t i = 0; i < e->layout->patch_count; i++) {
-        if (!e->def->base || !is_same(e, i)) {
+        if (!e->def->base || !quantised_same(e->def->base, e->def->now, i)) {
             e->scratch->changed[e->patches++] = i;
         }
     }
@@ -171,8 +160,8 @@ static manner make_symbols(encoding *e, uint32_t index, int lane, cloud_job *job
 {
     const geom_layout *layout = e->layout;
     const delta_shape shape = quantised_shape(layout, layout->patches[index].strands);
-    const uint16_t *base = e->def->base ? quantised_patch(e->def->base, layout, index) : NULL;
-    const uint16_t *now = quantised_patch(e->def->now, layout, index);
+    const uint16_t *base = e->def->base ? quantised_patch(e->def->base, index) : NULL;
+    const uint16_t *now = quantised_patch(e->def->now, index);
     uint16_t *symbols = cloud_writer_symbols(e->scratch->writer, lane), all;
     manner how = {.carry = DELTA_PLAIN};
     if (layout->kind == GEOM_GUIDES) {

@@ -121,7 +121,8 @@ awt_status geom_encode(const geom_layout *layout, geom_scratch *scratch, const g
 
 /* ---- deltas: what changed from one frame to another (proto/DELTAS.md) ---- */
 
-/* Memory for the whole numbers of one frame of a layout of kind strands or guides. AWT_NO_MEMORY, AWT_BAD_VALUE. */
+/* Memory for the whole numbers of one frame of a layout of kind strands or guides; the layout outlives it.
+ * AWT_NO_MEMORY, AWT_BAD_VALUE. */
 awt_status geom_quantised_create(const geom_layout *layout, geom_quantised **out, awt_error *error);
 void geom_quantised_destroy(geom_quantised *quantised);
 /* Bytes that it holds. */
@@ -138,9 +139,10 @@ typedef struct geom_quantise_def {
     const geom_quantised *previous;
 } geom_quantise_def;
 
-/* Fills `out`, which may be `previous`; adds to *clamped how many points of the other patches were set onto the box,
- * of guides how many sections no number reached. AWT_BAD_VALUE (a point or frame is not finite, `previous` is none of
- * this layout); `out` is then of no frame. */
+/* Fills `out`, which may be `previous`, and with which it shares the numbers of unchanged patches: both belong to one
+ * thread from then on, and may be destroyed in any order. Adds to *clamped how many points of the other patches were
+ * set onto the box, of guides how many sections no number reached. AWT_BAD_VALUE (a point or frame is not finite,
+ * `previous` is none of this layout); `out` is then of no frame. */
 awt_status geom_quantise(const geom_layout *layout, const geom_quantise_def *def, geom_quantised *out,
                          uint32_t *clamped, awt_error *error);
 

@@ -108,7 +108,7 @@ static bool fill_job(encode_hand *hand, const geom_layout *layout, const geom_fr
     draco_job *job = &w->jobs[k];
     *job = (draco_job){.mesh = &layout->meshes[w->patches[k]]};
     if (def->quantised) {
-        job->numbers = quantised_patch(def->quantised, layout, w->patches[k]);
+        job->numbers = quantised_patch(def->quantised, w->patches[k]);
         return true;
     }
     job->positions = encode_points_of(layout, def, patch);

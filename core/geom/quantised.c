@@ -35,6 +35,32 @@ static void *hold(geom_quantised *quantised, size_t size)
     return malloc(size);
 }
 
+/* Points of a patch, and its numbers. */
+static size_t patch_points(const geom_layout *layout, uint32_t index)
+{
+    return (size_t)layout->patches[index].strands * layout->points_per_strand;
+}
+
+static size_t patch_count(const geom_layout *layout, uint32_t index)
+{
+    const delta_shape shape = quantised_shape(layout, layout->patches[index].strands);
+    return delta_count(&shape);
+}
+
+static bool make_patches(const geom_layout *layout, geom_quantised *made)
+{
+    made->patches = calloc(layout->patch_count, sizeof(patch_numbers *));
+    made->held += layout->patch_count * sizeof(patch_numbers *);
+    bool has_all = made->patches != NULL;
+    for (; has_all && made->patch_count < layout->patch_count; made->patch_count += has_all) {
+        const size_t count = patch_count(layout, made->patch_count);
+        made->patches[made->patch_count] = patch_numbers_create(count);
+        made->held += patch_numbers_bytes(count);
+        has_all = made->patches[made->patch_count] != NULL;
+    }
+    return has_all;
+}
+
 awt_status geom_quantised_create(const geom_layout *layout, geom_quantised **out, awt_error *error)
 {
     *out = NULL;
@@ -49,10 +75,7 @@ awt_status geom_quantised_create(const geom_layout *layout, geom_quantised **out
     const size_t sections = (size_t)layout->largest_patch * layout->points_per_strand;
     made->held = sizeof *made;
     made->count = delta_count(&shape);
-    made->patch_count = layout->patch_count;
-    made->numbers = hold(made, made->count * sizeof *made->numbers);
-    made->checksums = hold(made, made->patch_count * sizeof *made->checksums);
-    bool has_all = made->numbers && made->checksums;
+    bool has_all = make_patches(layout, made);
     if (layout->kind == GEOM_GUIDES) {
         made->turns = hold(made, 3 * sections * sizeof *made->turns);
         made->rebuilt = hold(made, sections * sizeof *made->rebuilt);
@@ -69,8 +92,10 @@ awt_status geom_quantised_create(const geom_layout *layout, geom_quantised **out
 void geom_quantised_destroy(geom_quantised *quantised)
 {
     if (quantised) {
-        free(quantised->numbers);
-        free(quantised->checksums);
+        for (uint32_t i = 0; i < quantised->patch_count; i++) {
+            patch_numbers_destroy(quantised->patches[i]);
+        }
+        free(quantised->patches);
         free(quantised->turns);
         free(quantised->rebuilt);
         free(quantised);
@@ -87,15 +112,10 @@ uint32_t geom_quantised_checksum(const geom_quantised *quantised)
     return quantised->checksum;
 }
 
-/* Points before a patch, and in it. */
+/* Points before a patch. */
 static size_t patch_first(const geom_layout *layout, uint32_t index)
 {
     return (size_t)layout->patches[index].first_strand * layout->points_per_strand;
-}
-
-static size_t patch_points(const geom_layout *layout, uint32_t index)
-{
-    return (size_t)layout->patches[index].strands * layout->points_per_strand;
 }
 
 static bool same_shape(const geom_quantised *quantised, const geom_layout *layout)
@@ -110,9 +130,17 @@ bool quantised_fits(const geom_quantised *quantised, const geom_layout *layout)
     return quantised->layout == layout && same_shape(quantised, layout);
 }
 
-const uint16_t *quantised_patch(const geom_quantised *quantised, const geom_layout *layout, uint32_t index)
+const uint16_t *quantised_patch(const geom_quantised *quantised, uint32_t index)
 {
-    return quantised->numbers + quantised_shape(layout, 1).components * patch_first(layout, index);
+    return quantised->patches[index]->numbers;
+}
+
+/* Two checksums that agree prove nothing; numbers that do, do. */
+bool quantised_same(const geom_quantised *one, const geom_quantised *other, uint32_t index)
+{
+    const patch_numbers *a = one->patches[index], *b = other->patches[index];
+    return a == b || (a->checksum == b->checksum &&
+                      memcmp(a->numbers, b->numbers, patch_count(one->layout, index) * sizeof *a->numbers) == 0);
 }
 
 /* ---- patches that changed. False: a point or frame is not finite. */
@@ -156,28 +184,27 @@ static bool take_sections(const geom_layout *layout, const geom_quantise_def *de
 static bool take_patch(const geom_layout *layout, const geom_quantise_def *def, uint32_t index, geom_quantised *out,
                        uint32_t *clamped)
 {
-    const uint32_t components = quantised_shape(layout, 1).components;
-    uint16_t *numbers = out->numbers + components * patch_first(layout, index);
-    const bool taken = layout->kind == GEOM_GUIDES ? take_sections(layout, def, index, numbers, out, clamped)
-                                                   : take_points(layout, def->points, index, numbers, clamped);
+    patch_numbers *own = out->patches[index] = patch_numbers_own(out->patches[index]);
+    const bool taken = layout->kind == GEOM_GUIDES ? take_sections(layout, def, index, own->numbers, out, clamped)
+                                                   : take_points(layout, def->points, index, own->numbers, clamped);
     if (taken) {
-        out->checksums[index] = delta_checksum_numbers(numbers, components * patch_points(layout, index));
+        own->checksum = delta_checksum_numbers(own->numbers, patch_count(layout, index));
     }
     return taken;
 }
 
-static void keep_patch(const geom_layout *layout, const geom_quantised *previous, uint32_t index, geom_quantised *out)
+static uint32_t find_checksum(const geom_layout *layout, const geom_quantised *quantised)
 {
-    const uint32_t components = quantised_shape(layout, 1).components;
-    const size_t begin = components * patch_first(layout, index), count = components * patch_points(layout, index);
-    if (previous != out) {
-        memcpy(out->numbers + begin, previous->numbers + begin, count * sizeof *out->numbers);
-        out->checksums[index] = previous->checksums[index];
+    const draco_box box = quantised_box(layout);
+    uint32_t checksum = 0;
+    for (uint32_t i = 0; i < layout->patch_count; i++) {
+        checksum = crc32c_join(checksum, quantised->patches[i]->checksum, patch_count(layout, i) * sizeof(uint16_t));
     }
+    return delta_checksum(checksum, &box, quantised_binding(layout));
 }
 
-awt_status geom_quantise(const geom_layout *layout, const geom_quantise_def *def, geom_quantised *out,
-                         uint32_t *clamped, awt_error *error)
+static awt_status check_def(const geom_layout *layout, const geom_quantise_def *def, const geom_quantised *out,
+                            awt_error *error)
 {
     if (!same_shape(out, layout) || (def->unchanged && !(def->previous && quantised_fits(def->previous, layout)))) {
         return error_set(error, AWT_BAD_VALUE, "the whole numbers are none of this layout's");
@@ -185,19 +212,28 @@ awt_status geom_quantise(const geom_layout *layout, const geom_quantise_def *def
     if (layout->kind == GEOM_GUIDES && !def->frames) {
         return error_set(error, AWT_BAD_VALUE, "guides have frames");
     }
-    const size_t a_point = quantised_shape(layout, 1).components * sizeof *out->numbers;
-    uint32_t outside = 0, checksum = 0;
+    return AWT_OK;
+}
+
+awt_status geom_quantise(const geom_layout *layout, const geom_quantise_def *def, geom_quantised *out,
+                         uint32_t *clamped, awt_error *error)
+{
+    uint32_t outside = 0, taken = 0;
+    awt_status status = check_def(layout, def, out, error);
+    if (status != AWT_OK) {
+        return status;
+    }
     out->layout = NULL;
     for (uint32_t i = 0; i < layout->patch_count; i++) {
         if (def->unchanged && def->unchanged[i]) {
-            keep_patch(layout, def->previous, i, out);
-        } else if (!take_patch(layout, def, i, out, &outside)) {
+            out->patches[i] = patch_numbers_share(out->patches[i], def->previous->patches[i]);
+        } else if (take_patch(layout, def, i, out, &outside)) {
+            taken++;
+        } else {
             return error_set(error, AWT_BAD_VALUE, "a point or frame of patch %u is not a finite number", i);
         }
-        checksum = crc32c_join(checksum, out->checksums[i], a_point * patch_points(layout, i));
     }
-    const draco_box box = quantised_box(layout);
-    out->checksum = delta_checksum(checksum, &box, quantised_binding(layout));
+    out->checksum = taken > 0 ? find_checksum(layout, out) : def->previous->checksum;
     out->layout = layout;
     *clamped += outside;
     return AWT_OK;

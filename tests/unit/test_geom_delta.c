@@ -141,35 +141,6 @@ TEST(geom_deltas_leave_out_what_did_not_move)
     delta_fixture_fini(&f);
 }
 
-TEST(geom_numbers_kept_from_the_frame_before_are_those_made_anew)
-{
-    delta_fixture f;
-    bool still[20];
-    delta_fixture_init(&f, 18000, 8, 18, 12);
-    for (uint32_t i = 0; i < geom_layout_patches(f.hair.layout); i++) {
-        still[i] = i % 2 == 0;
-    }
-    delta_fixture_move(&f, 0.001f, still);
-    geom_quantised *anew = NULL, *kept = NULL;
-    CHECK_INT(geom_quantised_create(f.hair.layout, &anew, NULL), AWT_OK);
-    CHECK_INT(geom_quantised_create(f.hair.layout, &kept, NULL), AWT_OK);
-    uint32_t clamped = 0;
-    const geom_quantise_def all = {.points = f.hair.points};
-    const geom_quantise_def some = {.points = f.hair.points, .unchanged = still, .previous = f.base};
-    CHECK_INT(geom_quantise(f.hair.layout, &all, anew, &clamped, NULL), AWT_OK);
-    CHECK_INT(geom_quantise(f.hair.layout, &some, kept, &clamped, NULL), AWT_OK);
-    CHECK_U64(geom_quantised_checksum(kept), geom_quantised_checksum(anew));
-    CHECK(memcmp(kept->numbers, anew->numbers, anew->count * sizeof *anew->numbers) == 0);
-    uint32_t numbers = delta_checksum_numbers(anew->numbers, anew->count);
-    CHECK_U64(numbers, crc32c(anew->numbers, anew->count * 2)); /* on a host whose low byte is the first */
-    CHECK_U64(geom_quantised_checksum(anew), delta_checksum(numbers, &f.hair.layout->box, 0));
-    CHECK_INT(geom_quantise(f.hair.layout, &some, f.base, &clamped, NULL), AWT_OK); /* in place */
-    CHECK_U64(geom_quantised_checksum(f.base), geom_quantised_checksum(anew));
-    geom_quantised_destroy(anew);
-    geom_quantised_destroy(kept);
-    delta_fixture_fini(&f);
-}
-
 TEST(geom_deltas_of_another_base_are_refused)
 {
     delta_fixture f;

@@ -182,10 +182,12 @@ TEST(geom_guides_of_any_numbers_are_finite)
         const geom_delta_def def = {.now = f.now, .sequence = 1, .head = awt_forest_head(f.forest)};
         geom_strands strands = {0};
         guides_fixture_encode(&f, GUIDES_WHOLE, NULL);
+        CHECK_INT(f.now->patch_count, 1);
+        uint16_t *numbers = f.now->patches[0]->numbers;
         for (size_t i = 0; i < f.now->count; i++) {
-            f.now->numbers[i] = (uint16_t)(rng_u32(&random) >> (17 + (unsigned)round % 15));
+            numbers[i] = (uint16_t)(rng_u32(&random) >> (17 + (unsigned)round % 15));
         }
-        f.now->checksum = delta_checksum(delta_checksum_numbers(f.now->numbers, f.now->count),
+        f.now->checksum = delta_checksum(delta_checksum_numbers(numbers, f.now->count),
                                          &(draco_box){.bits = GUIDES_BITS}, f.binding->id);
         CHECK_INT(geom_encode_delta(f.layout, f.encoder, &def, &f.frame, NULL, NULL), AWT_OK);
         CHECK_INT(guides_fixture_receive(&f, GUIDES_WHOLE, &strands, NULL), AWT_OK);
