@@ -20,7 +20,6 @@ enum {
     LIMIT_DRAIN_S = 1, /* the default of another, and its greatest value */
     LIMIT_DRAIN_S_GREATEST = 3600,
     LIMIT_IO_THREADS_GREATEST = 256,
-    LIMIT_IO_THREADS_PER_CORE = 4, /* unless --io-threads says otherwise */
     LIMIT_HOT_SET = 32,            /* busy connections of one I/O thread, before the next one gets any */
     LIMIT_HOT_NEWCOMERS = 128,     /* connections of an I/O thread that takes new ones; beyond, they begin as idle */
     LIMIT_LOCK_TRIES = 200,        /* to get the service\'s lock, before a thread sleeps until it gets it */

@@ -32,7 +32,7 @@ TEST(server_options_have_their_defaults)
     CHECK_TEXT(c.host, "127.0.0.1");
     CHECK_TEXT(c.port, "4680");
     CHECK(c.workers >= 1);
-    CHECK(c.io_threads >= 1 && c.io_threads <= LIMIT_IO_THREADS_PER_CORE * c.workers);
+    CHECK(c.io_threads >= 1 && c.io_threads <= c.workers);
     CHECK_INT(c.max_forests, LIMIT_FORESTS);
     CHECK_INT(c.max_connections, LIMIT_CONNECTIONS);
     CHECK_INT(c.level, LOG_INFO);
