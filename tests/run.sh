@@ -1,5 +1,6 @@
 #!/bin/sh
-# run.sh: every test: unit tests and daemon with client end to end, with gcc and then with clang under ASan and UBSan; what
+# run.sh: every test: unit tests and daemon with client end to end, with gcc and then with clang under ASan and UBSan; inputs
+# of a committed corpus and what libFuzzer makes of them in a bounded number of runs; what
 # the command line client writes before other people's glTF tools; and a client in another language. Its last line counts all.
 set -u
 cd "$(dirname "$0")/.."
@@ -15,4 +16,5 @@ suite "the Python client" sh tests/python/suite.sh build/release
 suite "gateway and viewer, in a browser" sh tests/web/suite.sh build/release
 build_joined
 shared "every test, clang, ASan and UBSan" build/asan/tests
+suite "what reads bytes from outside, fuzzed from the corpus" sh tests/fuzz/suite.sh build/asan
 finish

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STRANDS = 40, ARRIVALS = 4096 };
+enum { STRANDS = 12, WISPS = 3, TOP_WISPS = 1, ARRIVALS = 4096 };
 
 void stage_expect(stage *s, bool holds, const char *otherwise)
 {
@@ -293,8 +293,8 @@ static void say_create(actor *who)
 {
     proto_message message = fake_create(decide(who, 3));
     message.as.create.strands = STRANDS;
-    message.as.create.finest_wisps = 8;
-    message.as.create.top_wisps = 4;
+    message.as.create.finest_wisps = WISPS;
+    message.as.create.top_wisps = TOP_WISPS;
     message.as.create.progress = (uint8_t)decide(who, 2);
     if (decide(who, 4) == 0) {
         message.as.create.source = 1;
