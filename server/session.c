@@ -1,5 +1,6 @@
 /* session.c: see session.h. */
 #include "session.h"
+#include "load_watch.h"
 #include "log.h"
 #include "metrics.h"
 #include "status.h"
@@ -157,6 +158,12 @@ bool session_make(session *s, const proto_message *message, recipe *making)
 {
     const origin from = {.session = s->handle, .request = message->request};
     awt_error error = {0};
+    if (load_watch_is_full(s->shared)) {
+        recipe_destroy(making);
+        session_error(s, message->type, message->request, PROTO_ERROR_BUSY,
+                      "the forests here are more than the workers can keep up with");
+        return false;
+    }
     if (registry_create(&s->shared->forests, making, from, s->shared->options.clock_us(), &error) != AWT_OK) {
         session_error_awt(s, message->type, message->request, &error);
         return false;

@@ -1,7 +1,6 @@
 /* session_forest.c: CREATE, ATTACH, DETACH, DESTROY, LIST: the life of forests. (CREATE is answered in completions.c,
  * when a worker has made the hair.) */
 #include "handlers.h"
-#include "load_watch.h"
 #include "log.h"
 
 #include <stdio.h>
@@ -23,11 +22,6 @@ void session_create(session *s, const proto_message *message)
     if ((from_upload && !file) || (own_hierarchy && !hierarchy)) {
         session_error(s, message->type, message->request, PROTO_ERROR_NO_UPLOAD, "there is no complete upload %lu",
                       (unsigned long)(from_upload && !file ? create->upload : create->hierarchy));
-        return;
-    }
-    if (load_watch_is_full(s->shared)) {
-        session_error(s, message->type, message->request, PROTO_ERROR_BUSY,
-                      "the forests here are more than the workers can keep up with");
         return;
     }
     if (recipe_create(create, file, hierarchy, &making, &error) != AWT_OK) {

@@ -155,6 +155,31 @@ TEST(server_restore_refuses_what_is_no_snapshot)
     service_fini(&shared);
 }
 
+TEST(server_makes_no_forest_of_whatever_source_where_the_workers_cannot_keep_up)
+{
+    service shared;
+    CHECK(fake_service_init(&shared, 0, 4, false));
+    fake_client *client = fake_client_open(&shared);
+    const struct proto_create_reply made = fake_make_forest(&shared, client, 5);
+    const proto_message create = fake_create(6);
+    proto_message restore = {.type = PROTO_RESTORE, .request = 43};
+    restore.as.restore.upload = 1;
+    upload_bytes(client, 1, snapshot(&shared, client, made.forest)->state);
+    shared.load.full = true;
+    shared.load_looked_us = fake_now_us; /* until somebody looks again */
+    fake_send(client, &create);
+    fake_expect_error(client, PROTO_ERROR_BUSY);
+    fake_send(client, &restore);
+    fake_expect_error(client, PROTO_ERROR_BUSY);
+    CHECK_INT(client->talk.pending, 0);
+    shared.load.full = false;
+    fake_send(client, &restore);
+    fake_work(&shared, client);
+    fake_expect(client, PROTO_CREATE_REPLY);
+    fake_client_destroy(client);
+    service_fini(&shared);
+}
+
 TEST(server_snapshot_is_for_who_may_drive)
 {
     service shared;
