@@ -1,5 +1,5 @@
 /* receiver.c: frames to strand points and nodes for a host that is not C: numbers and addresses only. Built as
- * WebAssembly, which the browser client decodes by (receiver.js), and for Windows. */
+ * WebAssembly, which the browser client decodes by (lib/receiver.js), and for Windows. */
 #include "framering.h"
 
 #include <stdlib.h>
@@ -16,9 +16,6 @@ typedef struct receiver {
     geom_binding *binding;       /* NULL until receiver_bind */
     const geom_strands *strands; /* the last frame, NULL: none yet */
     geom_nodes nodes;
-    geom_delta_reader *reader; /* of receiver_numbers, with the frame that the next one may be against */
-    geom_guides kept;
-    geom_strands evaluated;
     awt_error error;
 } receiver;
 
@@ -27,7 +24,6 @@ EXPORT void receiver_destroy(receiver *r);
 EXPORT bool receiver_bind(receiver *r, const void *bytes, size_t size);
 EXPORT bool receiver_frame(receiver *r, const void *bytes, size_t size, unsigned kind, unsigned level,
                            uint64_t sequence, uint64_t base);
-EXPORT bool receiver_numbers(receiver *r, const void *bytes, size_t size, uint64_t base_sequence);
 EXPORT bool receiver_nodes(receiver *r, const void *bytes, size_t size);
 EXPORT uint64_t receiver_newest(const receiver *r);
 EXPORT const float *receiver_positions(const receiver *r);
@@ -45,7 +41,7 @@ receiver *receiver_create(void)
     receiver *r = calloc(1, sizeof *r);
     if (r) {
         r->ring = framering_create();
-        if (!r->ring || geom_delta_reader_create(&r->reader, NULL) != AWT_OK) {
+        if (!r->ring) {
             receiver_destroy(r);
             return NULL;
         }
@@ -60,9 +56,6 @@ void receiver_destroy(receiver *r)
         framering_destroy(r->ring);
         geom_binding_destroy(r->binding);
         geom_nodes_fini(&r->nodes);
-        geom_delta_reader_destroy(r->reader);
-        geom_guides_fini(&r->kept);
-        geom_strands_fini(&r->evaluated);
         free(r);
     }
 }
@@ -79,7 +72,7 @@ bool receiver_bind(receiver *r, const void *bytes, size_t size)
     return true;
 }
 
-/* The GLB of a FRAME of ribbons, strands or guides, with what FRAME says of it. */
+/* The GLB of a FRAME of ribbons, strands or guides, whole or a delta, with what FRAME says of it. */
 bool receiver_frame(receiver *r, const void *bytes, size_t size, unsigned kind, unsigned level, uint64_t sequence,
                     uint64_t base)
 {
@@ -89,21 +82,6 @@ bool receiver_frame(receiver *r, const void *bytes, size_t size, unsigned kind, 
                                       .base = base,
                                       .glb = {bytes, (uint32_t)size}};
     return framering_take(r->ring, &frame, r->binding, &r->strands, &r->error) == AWT_OK;
-}
-
-/* A frame of guides as numbers, whole or against the one that came this way before, which its sender called
- * `base_sequence`. */
-bool receiver_numbers(receiver *r, const void *bytes, size_t size, uint64_t base_sequence)
-{
-    geom_guides next = {0};
-    if (geom_read_guides_delta(r->reader, r->binding, bytes, size, &r->kept, base_sequence, &next, &r->error) !=
-        AWT_OK) {
-        return false;
-    }
-    geom_guides_fini(&r->kept);
-    r->kept = next;
-    r->strands = &r->evaluated;
-    return geom_guides_strands(r->binding, &r->kept, &r->evaluated, &r->error) == AWT_OK;
 }
 
 /* The GLB of a FRAME of nodes. */

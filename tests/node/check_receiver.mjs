@@ -8,6 +8,7 @@
 import { readFileSync, readdirSync, existsSync } from 'node:fs';
 import { join } from 'node:path';
 import { readNumbers } from './delta.mjs';
+import { Wasm } from '../../clients/web/lib/wasm.js';
 import * as document from './guides.mjs';
 
 const ALLOWED_M = 0.2e-3, ROUNDING_M = 2e-6;
@@ -22,29 +23,13 @@ const { exports: receiver } = new WebAssembly.Instance(new WebAssembly.Module(re
   env: { emscripten_notify_memory_growth() {} },
 });
 receiver._initialize();
-
-/** The bytes at an address of the receiver's memory, which may have moved since the last call. */
-const memory = (address, length) => new Uint8Array(receiver.memory.buffer, address, length);
-
-function whatFailed(handle) {
-  const text = memory(receiver.receiver_error(handle), 240);
-  return new TextDecoder().decode(text.subarray(0, text.indexOf(0)));
-}
-
-/** `use` of the address of a copy of the bytes. */
-function withBytes(bytes, use) {
-  const address = receiver.malloc(bytes.length);
-  memory(address, bytes.length).set(bytes);
-  const result = use(address, bytes.length);
-  receiver.free(address);
-  return result;
-}
+const module = new Wasm(receiver);
 
 /** A receiver for the frames of that binding. */
 function receiverOf(file) {
   const handle = receiver.receiver_create();
-  if (!withBytes(readFileSync(file), (address, length) => receiver.receiver_bind(handle, address, length))) {
-    throw new Error(`${file}: ${whatFailed(handle)}`);
+  if (!module.withBytes(readFileSync(file), (address, length) => receiver.receiver_bind(handle, address, length))) {
+    throw new Error(`${file}: ${module.text(receiver.receiver_error(handle))}`);
   }
   return handle;
 }
@@ -54,12 +39,11 @@ function readFloats(file) {
   return new Float32Array(raw.buffer.slice(raw.byteOffset, raw.byteOffset + raw.byteLength));
 }
 
-/** `baseSequence` null: a frame for any viewer. */
-function receive(handle, bytes, baseSequence) {
-  if (!withBytes(bytes, (address, length) => (baseSequence === null
-    ? receiver.receiver_frame(handle, address, length, GUIDES, 0, 1n, 0n)
-    : receiver.receiver_numbers(handle, address, length, BigInt(baseSequence))))) {
-    throw new Error(whatFailed(handle));
+/** `numbers`: what readNumbers makes of a frame of numbers; null: it is one for any viewer. */
+function receive(handle, bytes, numbers) {
+  const { sequence = 0, baseSequence = 0 } = numbers ?? {};
+  if (!module.withBytes(bytes, (address, length) => receiver.receiver_frame(handle, address, length, GUIDES, 0, BigInt(sequence), BigInt(baseSequence)))) {
+    throw new Error(module.text(receiver.receiver_error(handle)));
   }
   const floats = receiver.receiver_strands(handle) * receiver.receiver_points(handle) * 3;
   return new Float32Array(receiver.memory.buffer, receiver.receiver_positions(handle), floats).slice();
@@ -79,7 +63,7 @@ function distances(points, expected) {
 async function check(handle, described, frames, file) {
   const bytes = readFileSync(file), expected = readFloats(`${file}.strands.f32`);
   const numbers = file.endsWith('.glb') ? null : await readNumbers(bytes, frames);
-  const begin = performance.now(), points = receive(handle, bytes, numbers && numbers.baseSequence), took = performance.now() - begin;
+  const begin = performance.now(), points = receive(handle, bytes, numbers), took = performance.now() - begin;
   if (points.length !== expected.length) {
     throw new Error(`${points.length} numbers, not ${expected.length}`);
   }

@@ -205,7 +205,7 @@ export class AwtHair extends EventTarget {
     let subscription = null, acknowledge = Promise.resolve();
     const stream = {
       frame: (frame) => {
-        acknowledge = acknowledge.then(() => this.takeFrame(frame, turn)).then(() => subscription?.credit(frame.sequence), (error) => {
+        acknowledge = acknowledge.then(() => this.takeFrame(frame, turn)).then((have) => subscription?.credit(have), (error) => {
           turn === this.turn && this.say('refused', error);
           subscription?.credit(0n); /* the next one comes whole */
         });
@@ -222,17 +222,19 @@ export class AwtHair extends EventTarget {
     turn === this.turn ? this.subscriptions.push(subscription) : subscription.end();
   }
 
+  /** Resolves to what CREDIT may say: the newest frame of hair that is kept here. */
   async takeFrame(frame, turn) {
     const { glb: bytes, kind, level, sequence, base } = frame;
     const decoded = await this.decoder.ask(kind === KINDS.nodes ? 'nodes' : 'frame', { bytes, kind, level, sequence, base });
+    const { have = 0n } = decoded;
     if (turn !== this.turn) {
-      return;
+      return have;
     }
     if (kind === KINDS.nodes) {
       this.nodes.show(decoded);
       this.nodes.visible = this.nodesWanted;
       this.say('nodes', decoded);
-      return;
+      return have;
     }
     const [x, y, z, ...orientation] = decoded.head;
     this.hair.show(decoded);
@@ -248,6 +250,7 @@ export class AwtHair extends EventTarget {
       splits: frame.splits, merges: frame.merges, step_ms: frame.step_us / 1000, encode_ms: frame.encode_us / 1000, age_ms, delta: base !== 0n,
       time_us: frame.time_us, sequence, skipped: frame.skipped, energy: frame.kinetic_energy_j };
     this.say('frame', this.stats);
+    return have;
   }
 
   /** Other kinds and levels from now on: { kind, level, nodes }. */

@@ -6,7 +6,8 @@ export async function loadWasm(url) {
   return new Wasm(instance.exports);
 }
 
-class Wasm {
+/** `calls`: the exports of an instance that has been initialised. */
+export class Wasm {
   constructor(calls) {
     this.calls = calls;
   }
