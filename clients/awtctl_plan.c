@@ -137,6 +137,14 @@ static const char *plan_whole(const play_words *words, play_plan *plan)
     if (plan->deltas && plan->kind != GEOM_STRANDS && plan->kind != GEOM_GUIDES) {
         return "--deltas goes with --kind strands or guides: other kinds have none";
     }
+    const bool has_levels = plan->kind == GEOM_RIBBON || plan->kind == GEOM_STRANDS;
+    if (!has_levels && (plan->budget > 0 || plan->attributes)) {
+        return "--budget and --attributes go with --kind ribbon or strands: other kinds have one level, and no "
+               "attributes";
+    }
+    if (plan->deltas && plan->attributes) {
+        return "either --deltas or --attributes: frames with attributes are whole";
+    }
     if (plan->every > 0 && !plan->out) {
         return "--every is about the files that --out DIR asks for";
     }
@@ -174,6 +182,10 @@ bool play_plan_read(int argc, char *const *argv, play_plan *plan, awtctl_exit *c
         {"level", OPTION_TEXT, "LEVEL", &words.level, 0, 0, "share of the hair: full, fifth, guides"},
         {"deltas", OPTION_FLAG, NULL, &plan->deltas, 0, 0,
          "strands or guides against the frame before; files of these are of no use alone"},
+        {"budget", OPTION_INTEGER, "BYTES", &plan->budget, 0, UINT32_MAX,
+         "of a frame: the daemon picks the richest level, up to --level, that keeps within; 0: none"},
+        {"attributes", OPTION_FLAG, NULL, &plan->attributes, 0, 0,
+         "of vertices beside their position: number of the strand, place of its root, width"},
         {"check", OPTION_FLAG, NULL, &plan->check, 0, 0, "decode and measure every frame, not only those written"},
         {"json", OPTION_OPTIONAL_TEXT, "FILE", &plan->json, 0, 0, "all figures as JSON, to FILE or stdout"},
         {"quiet", OPTION_FLAG, NULL, &plan->quiet, 0, 0, "no progress and no table, only the summary"},

@@ -30,6 +30,8 @@ typedef struct play_plan {
     long long frames, every; /* 0: the whole clip; 0: so that about 20 files come out */
     uint8_t kind, level;     /* as in QUERY */
     bool deltas;             /* against the frames before */
+    bool attributes;         /* of vertices */
+    long long budget;        /* bytes of a frame; 0: none */
     const char *out;         /* folder; NULL: no files */
     const char *json;        /* file, "-" or NULL */
     bool quiet, check;
@@ -55,7 +57,7 @@ typedef struct play_stream {
     awtclient *client;
     const play_plan *plan;
     uint64_t forest;
-    uint64_t subscription, request; /* of deltas; 0: frames answer QUERYs */
+    uint64_t subscription, request; /* of deltas, or within a budget; 0: frames answer QUERYs */
     framering *ring;
     geom_binding *binding; /* of guides; else NULL */
 } play_stream;

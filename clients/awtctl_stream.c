@@ -1,6 +1,6 @@
-/* awtctl_stream.c: how awtctl play gets its frames. Whole ones answer its QUERYs. Deltas come by a subscription, which
- * alone knows what has been acknowledged: then a QUERY of the kind of the fewest bytes drives the forest, and the frame
- * follows its answer. */
+/* awtctl_stream.c: how awtctl play gets its frames. Whole ones answer its QUERYs. Deltas, and levels within a budget,
+ * come by a subscription, which alone knows what has been acknowledged and how large frames were: then a QUERY of the
+ * kind of the fewest bytes drives the forest, and the frame follows its answer. */
 #include "awtctl_play.h"
 
 #include "geom/receive.h"
@@ -8,6 +8,11 @@
 #include <time.h>
 
 enum { STREAM_BUSY_TRIES = 100, STREAM_BUSY_LEAST_MS = 20, STREAM_BUSY_MOST_MS = 2000 };
+
+static bool is_subscribed(const play_plan *plan)
+{
+    return plan->deltas || plan->budget > 0;
+}
 
 static bool subscribe(awtclient *client, const play_plan *plan, uint64_t forest, play_stream *s)
 {
@@ -17,7 +22,9 @@ static bool subscribe(awtclient *client, const play_plan *plan, uint64_t forest,
     request.as.subscribe.kind = plan->kind;
     request.as.subscribe.level = plan->level;
     request.as.subscribe.credit = 1;
-    request.as.subscribe.deltas = 1;
+    request.as.subscribe.deltas = plan->deltas;
+    request.as.subscribe.budget = (uint32_t)plan->budget;
+    request.as.subscribe.attributes = plan->attributes;
     if (!awtclient_call(client, &request, &answer, &error)) {
         awtctl_failed("%s", error.text);
         return false;
@@ -53,7 +60,7 @@ bool play_stream_open(awtclient *client, const play_plan *plan, uint64_t forest,
         awtctl_failed("not enough memory");
         return false;
     }
-    return (!plan->deltas || subscribe(client, plan, forest, s)) &&
+    return (!is_subscribed(plan) || subscribe(client, plan, forest, s)) &&
            (plan->kind != GEOM_GUIDES || get_binding(client, plan, forest, s));
 }
 
@@ -80,8 +87,9 @@ static bool query(play_stream *s, int64_t time_us, proto_message *answer, awtcli
         proto_message request = {.type = PROTO_QUERY};
         request.as.query.forest = s->forest;
         request.as.query.time_us = time_us;
-        request.as.query.kind = s->plan->deltas ? GEOM_NODES : s->plan->kind;
-        request.as.query.level = s->plan->deltas ? 0 : s->plan->level;
+        request.as.query.kind = is_subscribed(s->plan) ? GEOM_NODES : s->plan->kind;
+        request.as.query.level = is_subscribed(s->plan) ? 0 : s->plan->level;
+        request.as.query.attributes = !is_subscribed(s->plan) && s->plan->attributes;
         if (awtclient_call(s->client, &request, answer, error)) {
             return true;
         }
@@ -116,7 +124,7 @@ bool play_stream_ask(play_stream *s, int64_t time_us, proto_message *frame, uint
         return false;
     }
     *last_write_us = frame->as.frame.last_write_us;
-    return !s->plan->deltas || receive(s, frame, error);
+    return !is_subscribed(s->plan) || receive(s, frame, error);
 }
 
 /* What is no hair is read, to see whether it can be. */
@@ -144,5 +152,5 @@ bool play_stream_credit(play_stream *s, awtclient_error *error)
     credit.as.credit.subscription = s->subscription;
     credit.as.credit.frames = 1;
     credit.as.credit.have = framering_newest(s->ring);
-    return !s->plan->deltas || awtclient_send(s->client, &credit, error);
+    return !is_subscribed(s->plan) || awtclient_send(s->client, &credit, error);
 }

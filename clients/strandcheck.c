@@ -39,29 +39,30 @@ static awt_status check_finite(const geom_strands *strands, awt_error *error)
     return AWT_OK;
 }
 
-static awt_status check_first(strandcheck *check, const geom_strands *strands, awt_error *error)
+static awt_status keep_first(strandcheck *check, strandcheck_first *first, const geom_strands *strands,
+                             awt_error *error)
 {
-    check->strand_count = strands->strand_count;
-    check->points_per_strand = strands->points_per_strand;
-    check->first_roots = malloc((size_t)strands->strand_count * 3 * sizeof(float));
-    check->first_lengths = malloc((size_t)strands->strand_count * sizeof(float));
-    check->bins = calloc(STRANDCHECK_BINS, sizeof *check->bins);
-    if (!check->first_roots || !check->first_lengths || !check->bins) {
+    first->strand_count = strands->strand_count;
+    first->points_per_strand = strands->points_per_strand;
+    first->roots = malloc((size_t)strands->strand_count * 3 * sizeof(float));
+    first->lengths = malloc((size_t)strands->strand_count * sizeof(float));
+    check->bins = check->bins ? check->bins : calloc(STRANDCHECK_BINS, sizeof *check->bins);
+    if (!first->roots || !first->lengths || !check->bins) {
         strandcheck_fini(check);
         return error_set(error, AWT_NO_MEMORY, NULL);
     }
     for (uint32_t s = 0; s < strands->strand_count; s++) {
-        memcpy(check->first_roots + 3 * (size_t)s, strand_root(strands, s), 3 * sizeof(float));
-        check->first_lengths[s] = (float)strand_length(strands, s);
+        memcpy(first->roots + 3 * (size_t)s, strand_root(strands, s), 3 * sizeof(float));
+        first->lengths[s] = (float)strand_length(strands, s);
     }
     return AWT_OK;
 }
 
-static void check_strand(strandcheck *check, const geom_strands *strands, uint32_t s)
+static void check_strand(strandcheck *check, const strandcheck_first *first, const geom_strands *strands, uint32_t s)
 {
-    double first = (double)check->first_lengths[s];
-    double percent = first > 0 ? fabs(strand_length(strands, s) / first - 1) * 100 : 0;
-    double root = point_distance(check->first_roots + 3 * (size_t)s, strand_root(strands, s));
+    double length = (double)first->lengths[s];
+    double percent = length > 0 ? fabs(strand_length(strands, s) / length - 1) * 100 : 0;
+    double root = point_distance(first->roots + 3 * (size_t)s, strand_root(strands, s));
     size_t bin = percent < 100 ? (size_t)(percent * 100) : STRANDCHECK_BINS - 1;
     check->bins[bin]++;
     check->measured++;
@@ -75,16 +76,17 @@ awt_status strandcheck_add(strandcheck *check, const geom_strands *strands, awt_
     if (status != AWT_OK) {
         return status;
     }
-    if (!check->first_roots) {
-        return check_first(check, strands, error);
+    strandcheck_first *first = &check->first[strands->level];
+    if (!first->roots) {
+        return keep_first(check, first, strands, error);
     }
-    if (strands->strand_count != check->strand_count || strands->points_per_strand != check->points_per_strand) {
+    if (strands->strand_count != first->strand_count || strands->points_per_strand != first->points_per_strand) {
         return error_set(error, AWT_BAD_VALUE, "the frame has %u strands of %u points, the first one had %u of %u",
-                         strands->strand_count, strands->points_per_strand, check->strand_count,
-                         check->points_per_strand);
+                         strands->strand_count, strands->points_per_strand, first->strand_count,
+                         first->points_per_strand);
     }
     for (uint32_t s = 0; s < strands->strand_count; s++) {
-        check_strand(check, strands, s);
+        check_strand(check, first, strands, s);
     }
     check->frames++;
     return AWT_OK;
@@ -104,8 +106,10 @@ double strandcheck_percent(const strandcheck *check, double share)
 
 void strandcheck_fini(strandcheck *check)
 {
-    free(check->first_roots);
-    free(check->first_lengths);
+    for (int level = 0; level < STRANDCHECK_LEVELS; level++) {
+        free(check->first[level].roots);
+        free(check->first[level].lengths);
+    }
     free(check->bins);
     *check = (strandcheck){0};
 }

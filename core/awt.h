@@ -77,6 +77,7 @@ typedef struct awt_strands {
     float *positions;       /* [point_count][3], root to tip */
     uint32_t skipped_count; /* strands left out: zero length, or fewer than two distinct points */
     uint32_t *file_strand;  /* [strand_count], rising: which strand of the file each one is; NULL: all are there */
+    float colour[3];        /* of all the hair, linear, each 0 .. 1; all 0: the file names none */
 } awt_strands;
 
 /* Reads a strand file (format recognised by its content, DATA.md). `out` is written on success only and then
@@ -257,6 +258,7 @@ typedef struct awt_groom_info {
     double longest_strand_m, median_strand_m;
     double mean_radius_m[AWT_MAX_LEVELS];
     float box_min[3], box_max[3]; /* head frame: no point of a strand ever leaves it (CONTRACT.md, Geometry) */
+    float colour[3];              /* the strands' */
     size_t bytes;                 /* memory held */
 } awt_groom_info;
 
@@ -395,7 +397,7 @@ uint64_t awt_forest_hash(const awt_forest *forest);
 /* ---- exact state: snapshots and recordings ----------------------------------------------------------------------- */
 
 /* Goes up whenever the same inputs give other bits than before, or the state holds more than before. */
-#define AWT_PHYSICS_VERSION 4
+#define AWT_PHYSICS_VERSION 5
 
 /* Writes everything that the forest's future depends on, its groom included: restored, in another process or on
  * another machine, it goes on to the bit as if it had never stopped, poses that wait included. *size is always set to

@@ -180,7 +180,7 @@ static awt_status use_form(const drawing_job *j, int form)
     drawn_form *forms = j->d->forms, *lender = NULL;
     awt_status status = AWT_OK;
     if (what->bare) {
-        const int meshes = form_find(what->kind, what->level, false);
+        const int meshes = form_find(what->kind, what->level, 0);
         lender = &forms[meshes];
         status = drawn_form_use(lender, NULL, j->d->groom, meshes, j->error);
     }

@@ -9,7 +9,8 @@ enum { PLACES = LIMIT_DELTA_BASES + 1 };
 awt_status drawn_form_use(drawn_form *f, const drawn_form *lender, const awt_groom *groom, int number, awt_error *error)
 {
     const frame_form *form = form_at(number);
-    const geom_layout_def def = {.kind = form->kind, .level = form->level};
+    const geom_layout_def def = {
+        .kind = form->kind, .level = form->level, .attributes = form->attributed ? GEOM_ATTRIBUTES_ALL : 0};
     if (form->bare && !f->layout) {
         f->layout = lender->layout;
         f->scratch = lender->scratch;

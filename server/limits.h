@@ -42,7 +42,7 @@ enum {
 
     /* what is drawn of one step of a forest */
     LIMIT_DELTA_BASES = 8,    /* frames of a form that deltas can be made against, and frames that a receiver keeps */
-    LIMIT_PICTURE_VIEWS = 25, /* forms and deltas drawn by one job */
+    LIMIT_PICTURE_VIEWS = 31, /* forms and deltas drawn by one job */
     LIMIT_SIZE_FRAMES = 64,   /* a form's last size is believed for so many frames */
     LIMIT_PICTURES_SPARE = 4, /* pictures kept to be drawn into again */
 

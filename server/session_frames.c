@@ -3,20 +3,36 @@
 #include "handlers.h"
 #include "turns.h"
 
-/* The form asked for; FORM_NONE: an ERROR was sent. */
-static int find_form(session *s, const proto_message *message, uint8_t kind, uint8_t level, bool deltas)
+/* True if a field that says yes or no does so, else an ERROR was sent. */
+static bool is_yes_or_no(session *s, const proto_message *message, const char *name, uint8_t value)
 {
+    if (value > 1) {
+        session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE, "%s is %u; it is 0 or 1", name,
+                      (unsigned)value);
+    }
+    return value <= 1;
+}
+
+/* The form asked for; FORM_NONE: an ERROR was sent. */
+static int find_form(session *s, const proto_message *message, uint8_t kind, uint8_t level, uint8_t deltas,
+                     uint8_t attributes)
+{
+    if (!is_yes_or_no(s, message, "deltas", deltas) || !is_yes_or_no(s, message, "attributes", attributes)) {
+        return FORM_NONE;
+    }
     if (kind > FORM_KIND_GREATEST || level > FORM_LEVEL_GREATEST) {
         session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE,
                       "kind is %u and level %u; the greatest are %d and %d", (unsigned)kind, (unsigned)level,
                       FORM_KIND_GREATEST, FORM_LEVEL_GREATEST);
         return FORM_NONE;
     }
-    int found = form_find(kind, level, deltas);
+    int found = form_find(kind, level, (deltas ? FORM_DELTAS : 0) | (attributes ? FORM_ATTRIBUTES : 0));
     if (found == FORM_NONE) {
-        session_error(s, message->type, message->request, PROTO_ERROR_NOT_SUPPORTED,
-                      "there are no frames of kind %u at level %u; guides and nodes have level 0 (full) alone",
-                      (unsigned)kind, (unsigned)level);
+        session_error(
+            s, message->type, message->request, PROTO_ERROR_NOT_SUPPORTED,
+            "there are no frames of kind %u at level %u%s; guides and nodes have level 0 (full) alone, and no "
+            "attributes",
+            (unsigned)kind, (unsigned)level, attributes ? " with attributes" : "");
     }
     return found;
 }
@@ -79,7 +95,7 @@ void session_step_many(session *s, const proto_message *message)
         session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE, "there is no forest in the list");
         return;
     }
-    const int form = find_form(s, message, many->kind, many->level, false);
+    const int form = find_form(s, message, many->kind, many->level, 0, many->attributes);
     for (uint16_t i = 0; form != FORM_NONE && i < many->forests.count; i++) {
         step_one(s, message, &many->forests.items[i], form);
     }
@@ -89,7 +105,7 @@ void session_query(session *s, const proto_message *message)
 {
     const struct proto_query *query = &message->as.query;
     resident *r = session_resident(s, message, query->forest, !query->latest);
-    int form = r ? find_form(s, message, query->kind, query->level, false) : FORM_NONE;
+    int form = r ? find_form(s, message, query->kind, query->level, 0, query->attributes) : FORM_NONE;
     if (form == FORM_NONE) {
         return;
     }
@@ -118,7 +134,7 @@ void session_binding(session *s, const proto_message *message)
 {
     const struct proto_binding *binding = &message->as.binding;
     resident *r = session_resident(s, message, binding->forest, false);
-    if (!r || find_form(s, message, GEOM_GUIDES, binding->level, false) == FORM_NONE) {
+    if (!r || find_form(s, message, GEOM_GUIDES, binding->level, 0, 0) == FORM_NONE) {
         return;
     }
     if (r->binding) {
@@ -132,13 +148,9 @@ void session_subscribe(session *s, const proto_message *message)
 {
     const struct proto_subscribe *subscribe = &message->as.subscribe;
     resident *r = session_resident(s, message, subscribe->forest, false);
-    int form = r ? find_form(s, message, subscribe->kind, subscribe->level, subscribe->deltas) : FORM_NONE;
+    int form = r ? find_form(s, message, subscribe->kind, subscribe->level, subscribe->deltas, subscribe->attributes)
+                 : FORM_NONE;
     if (form == FORM_NONE) {
-        return;
-    }
-    if (subscribe->deltas > 1) {
-        session_error(s, message->type, message->request, PROTO_ERROR_BAD_VALUE, "deltas is %u; it is 0 or 1",
-                      (unsigned)subscribe->deltas);
         return;
     }
     subscription *place = session_subscription_place(s);

@@ -40,7 +40,8 @@ typedef struct geom_layout_def {
     geom_level level; /* of ribbons and strands; of guides: full */
     int bits; /* quantisation of positions, GEOM_LEAST_BITS .. GEOM_GREATEST_BITS; 0: the kind's own. Guides: 0 */
     uint32_t attributes; /* of vertices, beside the position: geom_attribute; own encoder, ribbons and strands only */
-    float colour[3];     /* the material's base colour, linear, each 0 .. 1; all 0: brown. Of guides: not looked at */
+    float colour[3];     /* the material's base colour, linear, each 0 .. 1; all 0: the groom's, or, where that has
+                            none, brown. Of guides: not looked at */
     bool stock;          /* libdraco's encoder, the reference, instead of our own: the same positions, much slower */
 } geom_layout_def;
 

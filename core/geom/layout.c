@@ -212,6 +212,11 @@ static awt_status make_template(geom_layout *layout, awt_error *error)
     return status;
 }
 
+static bool is_coloured(const float *colour)
+{
+    return colour[0] > 0 || colour[1] > 0 || colour[2] > 0;
+}
+
 awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def, geom_layout **out, awt_error *error)
 {
     static const geom_layout_def usual = {.kind = GEOM_RIBBON};
@@ -230,8 +235,8 @@ awt_status geom_layout_create(const awt_groom *groom, const geom_layout_def *def
     layout->kind = def->kind;
     layout->stock = def->stock;
     layout->extra = def->attributes;
-    const bool coloured = def->colour[0] > 0 || def->colour[1] > 0 || def->colour[2] > 0;
-    memcpy(layout->colour, coloured ? def->colour : brown, sizeof layout->colour);
+    const float *named = is_coloured(def->colour) ? def->colour : info->colour;
+    memcpy(layout->colour, is_coloured(named) ? named : brown, sizeof layout->colour);
     status = take_lines(layout, groom, def, error);
     if (status == AWT_OK && !make_arrays(layout, groom)) {
         status = error_set(error, AWT_NO_MEMORY, NULL);

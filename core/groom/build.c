@@ -187,6 +187,7 @@ awt_status awt_groom_build(const awt_strands *strands, const awt_groom_def *def,
     describe_lengths(&build);
     describe_radii(build.groom);
     describe_box(&build);
+    memcpy(build.groom->info.colour, strands->colour, sizeof strands->colour);
     draft_fini(&build);
     draft_report(&build, DRAFT_DONE);
     *out = build.groom;

@@ -13,6 +13,7 @@ typedef struct read_layout {
     const unsigned char *segments; /* u16[strand_count], points of a strand less one; NULL: all strands alike */
     const unsigned char *points;   /* f32[3] each, strand after strand, root to tip */
     uint32_t point_stride;         /* bytes from one point to the next, at least 12 */
+    float colour[3];               /* as in awt_strands */
 } read_layout;
 
 /* Does the file begin as this format does? Any size. */

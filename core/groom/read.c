@@ -11,6 +11,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static uint32_t strand_points(const read_layout *layout, uint32_t strand)
 {
@@ -119,6 +120,7 @@ awt_status awt_strands_read(const void *bytes, size_t size, awt_strands *out, aw
         return error_set(error, AWT_NO_MEMORY, NULL);
     }
     strands_copy(&layout, &strands);
+    memcpy(strands.colour, layout.colour, sizeof strands.colour);
     *out = strands;
     return AWT_OK;
 }

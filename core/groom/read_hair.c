@@ -12,6 +12,7 @@
 
 enum {
     HAIR_HEADER = 128,
+    HAIR_COLOUR = 28, /* offset of the header's colour, f32[3] */
     HAIR_SEGMENTS = 1u << 0,
     HAIR_POINTS = 1u << 1,
     HAIR_THICKNESS = 1u << 2,
@@ -59,6 +60,36 @@ static awt_status hair_check_header(const hair_header *header, size_t size, awt_
     return AWT_OK;
 }
 
+/* What a screen shows for that share of its light. (The usual polynomial, for pow gives other bits elsewhere.) */
+static float colour_to_linear(double shown)
+{
+    return (float)(shown * (shown * (shown * 0.305306011 + 0.682171111) + 0.012522878));
+}
+
+/* The colours of all points together, or the header's; nothing where one is not a colour. */
+static void hair_take_colour(const hair_header *header, const unsigned char *bytes, float *out)
+{
+    const unsigned char *colours = bytes + HAIR_COLOUR;
+    uint32_t count = 1;
+    if (header->arrays & HAIR_COLOURS) {
+        colours = bytes + hair_announced_size(header) - 12 * (size_t)header->points;
+        count = header->points;
+    }
+    double sum[3] = {0};
+    for (uint32_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < 3; k++) {
+            const float part = load_f32(colours + 12 * (size_t)i + 4 * k);
+            if (!(part >= 0 && part <= 1)) {
+                return;
+            }
+            sum[k] += (double)part;
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        out[k] = colour_to_linear(sum[k] / count);
+    }
+}
+
 /* Every strand within the limit, and all of them together as many points as the header says. */
 static awt_status hair_check_segments(const hair_header *header, const unsigned char *segments, awt_error *error)
 {
@@ -103,5 +134,6 @@ awt_status read_hair(const unsigned char *bytes, size_t size, read_layout *out, 
                          .segments = segments,
                          .points = bytes + HAIR_HEADER + (has_segments ? 2 * (size_t)header.strands : 0),
                          .point_stride = 12};
+    hair_take_colour(&header, bytes, out->colour);
     return AWT_OK;
 }

@@ -21,6 +21,7 @@ awt_status snapshot_damaged(const char *section, awt_error *error);
 awt_status snapshot_check_sizes(const groom_plan *plan, awt_error *error);
 /* AWT_BAD_VALUE, as what follows. */
 awt_status snapshot_check_measures(const awt_groom *groom, awt_error *error);
+awt_status snapshot_check_look(const awt_groom *groom, awt_error *error);
 /* Poses finite and their times in order: the latest reached, now, those that wait. */
 awt_status snapshot_check_motion(const awt_forest *f, awt_error *error);
 /* 1 <= first_split[super] <= first_split[sub] <= M, and M at the finest level: then what is active makes trees. */

@@ -47,6 +47,15 @@ awt_status snapshot_check_measures(const awt_groom *g, awt_error *error)
     return sound ? AWT_OK : snapshot_damaged("MEAS", error);
 }
 
+awt_status snapshot_check_look(const awt_groom *g, awt_error *error)
+{
+    bool sound = true;
+    for (int k = 0; k < 3; k++) {
+        sound = sound && g->info.colour[k] >= 0 && g->info.colour[k] <= 1;
+    }
+    return sound ? AWT_OK : snapshot_damaged("LOOK", error);
+}
+
 static bool is_finite(dvec3 v)
 {
     return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);

@@ -49,6 +49,9 @@ static awt_status read_spans(const sections_reader *r, const span *spans, size_t
     return status;
 }
 
+/* The physics version that snapshots have section LOOK from. */
+enum { LOOK_SINCE = 5 };
+
 /* ---- the groom --------------------------------------------------------------------------------------------------- */
 
 /* Sets s->groom; on an error it is the caller's all the same. */
@@ -86,6 +89,12 @@ static awt_status read_groom(const sections_reader *r, snapshot *s)
     }
     if (status == AWT_OK) {
         status = snapshot_check_measures(s->groom, s->error);
+    }
+    if (status == AWT_OK && r->physics_version >= LOOK_SINCE) {
+        status = read_walk(r, "LOOK", snapshot_walk_look, s);
+    }
+    if (status == AWT_OK) {
+        status = snapshot_check_look(s->groom, s->error);
     }
     return status == AWT_OK && !pack_wisps(s->groom) ? error_set(s->error, AWT_NO_MEMORY, NULL) : status;
 }

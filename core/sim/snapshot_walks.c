@@ -94,6 +94,12 @@ awt_status snapshot_walk_measures(codec *c, snapshot *s)
     return AWT_OK;
 }
 
+awt_status snapshot_walk_look(codec *c, snapshot *s)
+{
+    walk_f32s(c, s->groom->info.colour, 3);
+    return AWT_OK;
+}
+
 awt_status snapshot_walk_params(codec *c, snapshot *s)
 {
     if (c->in) {

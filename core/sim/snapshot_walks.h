@@ -19,6 +19,7 @@ void snapshot_forest_spans(const awt_forest *f, span out[SNAPSHOT_FOREST_SPANS])
 #define SNAPSHOT_WALKS(X)              \
     X("SIZE", snapshot_walk_sizes)     \
     X("MEAS", snapshot_walk_measures)  \
+    X("LOOK", snapshot_walk_look)      \
     X("PARA", snapshot_walk_params)    \
     X("COLL", snapshot_walk_colliders) \
     X("MOTN", snapshot_walk_motion)    \

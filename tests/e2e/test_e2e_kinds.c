@@ -197,7 +197,15 @@ TEST(e2e_every_kind_shows_a_viewer_the_hair_that_the_driver_sees)
 
 TEST(e2e_awtctl_plays_and_checks_every_kind)
 {
-    static const char *const kinds[] = {"ribbon", "strands", "guides", "nodes", "strands --deltas", "guides --deltas"};
+    static const char *const kinds[] = {"ribbon",
+                                        "strands",
+                                        "guides",
+                                        "nodes",
+                                        "strands --deltas",
+                                        "guides --deltas",
+                                        "ribbon --attributes --level fifth",
+                                        "strands --attributes",
+                                        "strands --budget 8000 --motion run"};
     daemon_process daemon;
     CHECK(daemon_start(&daemon, 1, NULL));
     for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
@@ -214,7 +222,7 @@ TEST(e2e_awtctl_plays_and_checks_every_kind)
             compared = compared || strstr(line, "against the first of 90 decoded frames");
         }
         CHECK_INT(report ? pclose(report) : -1, 0);
-        CHECK(deltas == (k >= 4));
+        CHECK(deltas == (k == 4 || k == 5));
         CHECK(compared == (k != GEOM_NODES));
     }
     CHECK_INT(daemon_stop(&daemon), 0);

@@ -177,7 +177,7 @@ TEST(drawing_allocates_nothing_in_the_steady_state)
             wishes_add(&wanted, (view_name){.form = form});
         }
         wishes_add(&wanted, (view_name){.form = 3, .base = n > 3 ? n - 3 : 0});
-        wishes_add(&wanted, (view_name){.form = form_find(GEOM_GUIDES, 0, true), .base = n > 3 ? n - 3 : 0});
+        wishes_add(&wanted, (view_name){.form = form_find(GEOM_GUIDES, 0, FORM_DELTAS), .base = n > 3 ? n - 3 : 0});
         count_begin();
         const bool renewed = picture_renew(*at);
         const awt_status status = drawing_draw(d, f, n, &wanted, *at, &error);

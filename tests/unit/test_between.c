@@ -33,7 +33,7 @@ static void show(drawing *d, const awt_forest *f, uint64_t sequence, int64_t tim
     wishes wanted = {0};
     awt_error error = {0};
     picture *p = picture_create();
-    wishes_add(&wanted, (view_name){.form = form_find(GEOM_STRANDS, 0, false)});
+    wishes_add(&wanted, (view_name){.form = form_find(GEOM_STRANDS, 0, 0)});
     drawing_show(d, f, time_us);
     CHECK_INT(drawing_draw(d, f, sequence, &wanted, p, &error), AWT_OK);
     const view *v = picture_view(p, wanted.names[0]);

@@ -23,9 +23,9 @@ typedef struct rest_hair {
     geom_buffer frame;
 } rest_hair;
 
-static void rest_hair_init(rest_hair *h, const geom_layout_def *def)
+static void rest_hair_of(rest_hair *h, const awt_groom *groom, const geom_layout_def *def)
 {
-    *h = (rest_hair){.groom = fixture_groom("long", 2000)};
+    *h = (rest_hair){.groom = groom};
     const size_t first = (size_t)groom_finest_first(h->groom) * h->groom->info.sections;
     float *scratch = malloc(awt_groom_strand_scratch(h->groom) * sizeof *scratch);
     awt_error error = {0};
@@ -40,6 +40,11 @@ static void rest_hair_init(rest_hair *h, const geom_layout_def *def)
     CHECK_INT(geom_encode(h->layout, h->scratch, &frame, &h->frame, NULL, &error), AWT_OK);
     CHECK_TEXT(error.text, "");
     free(scratch);
+}
+
+static void rest_hair_init(rest_hair *h, const geom_layout_def *def)
+{
+    rest_hair_of(h, fixture_groom("long", 2000), def);
 }
 
 static void rest_hair_fini(rest_hair *h)
@@ -132,6 +137,61 @@ static void write_values(const rest_hair *h, const char *folder, const char *nam
     }
     check_write_file(folder, name, ".extra.f32", values, 4 * vertices * sizeof *values);
     free(values);
+}
+
+/* Grown hair of that colour, built, and come back from a snapshot. */
+static awt_forest *coloured_forest(const float *colour, awt_groom **groom)
+{
+    awt_strands strands = {0};
+    awt_groom *grown = NULL;
+    awt_forest *made = NULL, *back = NULL;
+    size_t size = 0;
+    CHECK_INT(awt_style_grow(awt_style_find("short"), 300, 1, &strands, NULL), AWT_OK);
+    memcpy(strands.colour, colour, sizeof strands.colour);
+    const awt_groom_def def = awt_groom_def_default();
+    CHECK_INT(awt_groom_build(&strands, &def, NULL, NULL, &grown, NULL), AWT_OK);
+    const awt_forest_def start = awt_forest_def_default(grown);
+    CHECK_INT(awt_forest_create(grown, &start, &made, NULL), AWT_OK);
+    CHECK_INT(awt_forest_snapshot(made, NULL, 0, &size, NULL), AWT_OK);
+    unsigned char *bytes = malloc(size);
+    CHECK(bytes && awt_forest_snapshot(made, bytes, size, &size, NULL) == AWT_OK);
+    CHECK_INT(awt_snapshot_restore(bytes, size, groom, &back, NULL), AWT_OK);
+    free(bytes);
+    awt_forest_destroy(made);
+    awt_groom_destroy(grown);
+    awt_strands_fini(&strands);
+    return back;
+}
+
+/* Does the frame's first chunk, which is text, have that in it? */
+static bool frame_says(const geom_buffer *frame, const char *text)
+{
+    const size_t length = strlen(text);
+    for (size_t i = 0; i + length <= frame->size; i++) {
+        if (memcmp(frame->bytes + i, text, length) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+TEST(geom_material_has_the_colour_of_the_strands)
+{
+    static const struct {
+        float colour[3];
+        const char *text;
+    } cases[] = {{{0.5f, 0.25f, 0.125f}, "\"baseColorFactor\":[0.5,0.25,0.125,1.0]"},
+                 {{0, 0, 0}, "\"baseColorFactor\":[0.1299"}};
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        awt_groom *groom = NULL;
+        awt_forest *forest = coloured_forest(cases[k].colour, &groom);
+        rest_hair h;
+        rest_hair_of(&h, groom, &(geom_layout_def){.kind = GEOM_STRANDS});
+        CHECK(frame_says(&h.frame, cases[k].text));
+        rest_hair_fini(&h);
+        awt_forest_destroy(forest);
+        awt_groom_destroy(groom);
+    }
 }
 
 TEST(geom_attributes_for_other_readers)

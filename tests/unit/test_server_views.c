@@ -198,6 +198,73 @@ TEST(server_views_are_drawn_for_who_wants_them_and_for_nobody_else)
 }
 
 /* Patches that did not move are kept; the bytes are those of who never saw the hair before. */
+static const struct proto_frame *ask_attributed(scene *s, uint8_t kind, uint8_t level, uint8_t attributes)
+{
+    proto_message query = fake_query(s->forest, 0);
+    query.as.query.latest = 1;
+    query.as.query.kind = kind;
+    query.as.query.level = level;
+    query.as.query.attributes = attributes;
+    CHECK(fake_send(s->client, &query));
+    fake_work(&s->shared, s->client);
+    return attributes < 2 && kind <= GEOM_STRANDS ? &fake_expect(s->client, PROTO_FRAME)->as.frame : NULL;
+}
+
+TEST(server_views_have_attributes_for_who_asks)
+{
+    scene s;
+    scene_init(&s);
+    advance(&s, GEOM_NODES, true);
+    for (uint8_t kind = GEOM_RIBBON; kind <= GEOM_STRANDS; kind++) {
+        for (uint8_t level = 0; level <= FORM_LEVEL_GREATEST; level++) {
+            const struct proto_frame *frame = ask_attributed(&s, kind, level, 0);
+            const uint32_t bytes = frame->glb.length;
+            geom_strands plain = receive(NULL, frame);
+            frame = ask_attributed(&s, kind, level, 1);
+            geom_strands attributed = receive(NULL, frame);
+            CHECK_INT(plain.attributes, 0);
+            CHECK_INT(attributed.attributes, GEOM_ATTRIBUTES_ALL);
+            CHECK_INT(attributed.level, level);
+            CHECK(distance(&plain, &attributed) == 0);
+            CHECK(frame->glb.length > bytes);
+            CHECK(holds(&frame->glb, "TEXCOORD_0"));
+            geom_strands_fini(&plain);
+            geom_strands_fini(&attributed);
+        }
+    }
+    const uint64_t encoded = s.shared.counters.frames_encoded;
+    ask_attributed(&s, GEOM_STRANDS, 0, 1);
+    CHECK_U64(s.shared.counters.frames_encoded, encoded);
+    ask_attributed(&s, GEOM_GUIDES, 0, 1);
+    fake_expect_error(s.client, PROTO_ERROR_NOT_SUPPORTED);
+    ask_attributed(&s, GEOM_STRANDS, 0, 2);
+    fake_expect_error(s.client, PROTO_ERROR_BAD_VALUE);
+    scene_fini(&s);
+}
+
+TEST(server_views_with_attributes_come_whole_whatever_is_asked)
+{
+    scene s;
+    scene_init(&s);
+    proto_message message = {.type = PROTO_SUBSCRIBE, .request = 60};
+    message.as.subscribe =
+        (struct proto_subscribe){.forest = s.forest, .kind = GEOM_STRANDS, .credit = 9, .deltas = 1, .attributes = 1};
+    CHECK(fake_send(s.client, &message));
+    const uint64_t handle = fake_expect(s.client, PROTO_SUBSCRIBE_REPLY)->as.subscribe_reply.subscription;
+    for (int i = 0; i < 3; i++) {
+        advance(&s, GEOM_NODES, true);
+        const struct proto_frame *frame = &fake_expect(s.client, PROTO_FRAME)->as.frame;
+        CHECK_U64(frame->base, 0);
+        geom_strands got = receive(NULL, frame);
+        CHECK_INT(got.attributes, GEOM_ATTRIBUTES_ALL);
+        geom_strands_fini(&got);
+        proto_message credit = {.type = PROTO_CREDIT};
+        credit.as.credit = (struct proto_credit){.subscription = handle, .frames = 1, .have = frame->sequence};
+        CHECK(fake_send(s.client, &credit));
+    }
+    scene_fini(&s);
+}
+
 TEST(server_views_do_not_depend_on_what_was_drawn_before)
 {
     enum { MOVING = 10, RESTING = 60 };

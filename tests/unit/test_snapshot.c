@@ -290,6 +290,29 @@ TEST(a_snapshot_of_other_physics_gives_its_groom_and_parameters_only)
     awt_forest_destroy(f);
 }
 
+TEST(a_snapshot_from_before_hair_had_colours_gives_its_groom)
+{
+    awt_forest *f = forest_under_way();
+    bytes b = snapshot_of(f);
+    awt_groom *groom;
+    awt_params params;
+    for (uint32_t k = 0; k < section_count(&b); k++) {
+        unsigned char *entry = entry_at(&b, k);
+        if (memcmp(entry, "LOOK", 4) == 0) {
+            memcpy(entry, "GONE", 4);
+        }
+    }
+    repair(&b);
+    CHECK_INT(awt_snapshot_read_groom(b.data, b.size, &groom, &params, NULL), AWT_BAD_VALUE);
+    store_u32(b.data + 8, 4);
+    repair(&b);
+    CHECK_INT(awt_snapshot_read_groom(b.data, b.size, &groom, &params, NULL), AWT_OK);
+    CHECK_INT(groom->info.strand_count, FEW_STRANDS);
+    awt_groom_destroy(groom);
+    free(b.data);
+    awt_forest_destroy(f);
+}
+
 /* ---- strangers' bytes -------------------------------------------------------------------------------------------- */
 
 /* Tries the bytes; if they make a forest, it must live. False: refused, with words. */

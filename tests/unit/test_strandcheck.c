@@ -75,6 +75,14 @@ TEST(strandcheck_refuses_other_strands_and_broken_frames)
     const geom_strands broken = {.strand_count = STRANDS, .points_per_strand = POINTS, .positions = f.points};
     CHECK_INT(strandcheck_add(&check, &broken, &error), AWT_BAD_VALUE);
     CHECK_INT(check.frames, 0);
+    geom_strands coarser = {.strand_count = STRANDS + 1,
+                            .points_per_strand = POINTS,
+                            .positions = other.points,
+                            .level = GEOM_LEVEL_FIFTH}; /* whose first frame it is */
+    CHECK_INT(strandcheck_add(&check, &coarser, &error), AWT_OK);
+    CHECK_INT(check.frames, 0);
+    CHECK_INT(strandcheck_add(&check, &coarser, &error), AWT_OK);
+    CHECK_INT(check.frames, 1);
     strandcheck_fini(&check);
     geom_fixture_fini(&f);
     geom_fixture_fini(&other);

@@ -304,6 +304,37 @@ TEST(strands_read_cyhair_needs_points_that_add_up)
     check_refused(&file, AWT_BAD_FORMAT);
 }
 
+static void check_colour(const bytes_file *file, float red, float green, float blue)
+{
+    const float expected[3] = {red, green, blue};
+    awt_strands strands;
+    CHECK_INT(read_exactly(file, file->size, &strands, NULL), AWT_OK);
+    for (int k = 0; k < 3; k++) {
+        CHECK(fabsf(strands.colour[k] - expected[k]) < 2e-3f);
+    }
+    awt_strands_fini(&strands);
+}
+
+TEST(strands_read_cyhair_has_the_colour_of_its_points_or_of_its_header)
+{
+    bytes_file file = hair_make(false);
+    check_colour(&file, 0, 0, 0);
+    store_f32(file.bytes + 28, 1.0f);
+    store_f32(file.bytes + 32, 0.5f);
+    check_colour(&file, 1, 0.2140f, 0); /* a screen's half is a fifth of the light */
+    store_u32(file.bytes + 12, 0x12);
+    for (uint32_t i = 0; i < STRANDS * POINTS; i++) {
+        file_f32(&file, 0.0f);
+        file_f32(&file, i % 2 ? 1.0f : 0.6f);
+        file_f32(&file, 1.0f);
+    }
+    check_colour(&file, 0, 0.6038f, 1);
+    store_f32(file.bytes + file.size - 4, NAN);
+    check_colour(&file, 0, 0, 0);
+    store_f32(file.bytes + file.size - 4, 1.001f);
+    check_colour(&file, 0, 0, 0);
+}
+
 TEST(strands_read_refuses_what_is_no_strand_file)
 {
     bytes_file file = {.bytes = "glTF, or some other file that awt does not read", .size = 48};

@@ -177,7 +177,7 @@ void viewers_advance(viewers *v, bool moves)
     /* the truth first, so that what viewers get can be compared with it: the picture is the job's until it is taken */
     const resident *r = registry_find(&v->shared.forests, v->forest);
     const picture *drawn = r->work.drawn;
-    const view *whole = drawn ? picture_view(drawn, (view_name){.form = form_find(GEOM_STRANDS, 0, false)}) : NULL;
+    const view *whole = drawn ? picture_view(drawn, (view_name){.form = form_find(GEOM_STRANDS, 0, 0)}) : NULL;
     CHECK(whole != NULL);
     if (whole) {
         geom_strands *truth = &v->truth[drawn->figures.sequence % VIEWERS_FRAMES];

@@ -71,8 +71,9 @@ STRUCTS = {
     "set_params": struct("SetParams", "u64 forest; params params"),
     "motion": struct("Motion", "u64 forest; u32 epoch sequence; u8 teleport; i64 time_us; pose head body; "
                      "collider_poses colliders"),
-    "query": struct("Query", "u64 forest; u8 latest; i64 time_us; u8 kind level"),
-    "subscribe": struct("Subscribe", "u64 forest; u8 kind level; u16 greatest_rate; u32 credit; u8 deltas; u32 budget"),
+    "query": struct("Query", "u64 forest; u8 latest; i64 time_us; u8 kind level attributes"),
+    "subscribe": struct("Subscribe", "u64 forest; u8 kind level; u16 greatest_rate; u32 credit; u8 deltas; "
+                        "u32 budget; u8 attributes"),
     "subscribe_reply": struct("SubscribeReply", "u64 subscription"),
     "unsubscribe": struct("Unsubscribe", "u64 subscription"),
     "credit": struct("Credit", "u64 subscription; u32 frames; u64 have"),
