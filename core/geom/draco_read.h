@@ -8,21 +8,31 @@
 
 #include "awt.h"
 #include "geom/draco_format.h"
+#include "geom/rans.h"
 
-/* The memory of one reader. */
+/* The memory of one reader, which goes through RANS_LANES meshes at once. */
 typedef struct draco_reader draco_reader;
 awt_status draco_reader_create(uint32_t most_vertices, uint32_t most_triangles, draco_reader **out, awt_error *error);
 void draco_reader_destroy(draco_reader *reader);
 
-/* Of extra attributes (draco_extra.h) it is checked that they are these; their data are not read, and may be anything.
- *
- * Reads the mesh of exactly these `vertices` and `triangles` with exactly these `indices` [triangles][3]; `positions`
- * [vertices][3] is filled with finite numbers. False: these bytes are not that, and `positions` may be half written. */
-bool draco_read(draco_reader *reader, uint32_t extra, const void *bytes, size_t size, const uint16_t *indices,
-                uint32_t vertices, uint32_t triangles, float *positions);
+/* What meshes must be of. */
+typedef struct draco_kind {
+    const uint16_t *indices; /* [triangles of the largest][3]; every mesh's are the first of them */
+    uint32_t extra;          /* attributes; it is checked that they are these, their data may be anything */
+    int turn_bits;           /* 0: no turns */
+} draco_kind;
 
-/* The same of a mesh with turns [vertices][3] of `turn_bits` bits beside its positions. */
-bool draco_read_turns(draco_reader *reader, int turn_bits, const void *bytes, size_t size, const uint16_t *indices,
-                      uint32_t vertices, uint32_t triangles, float *positions, int16_t *turns);
+/* One mesh on its way in: of exactly these `vertices` and `triangles`, 1 or more of each, within the reader's. */
+typedef struct draco_source {
+    const unsigned char *bytes; /* [size] */
+    size_t size;
+    uint32_t vertices, triangles; /* vertices 0: a source that is not used */
+    float *positions;             /* out: [vertices][3], finite numbers */
+    int16_t *turns;               /* out, where there are turns: [vertices][3] of `turn_bits` bits */
+} draco_source;
+
+/* Extra attributes (draco_extra.h) stand beside no turns. False: one of the meshes is not that, and what was to be
+ * filled may be half written. */
+bool draco_read(draco_reader *reader, const draco_kind *kind, const draco_source sources[RANS_LANES]);
 
 #endif

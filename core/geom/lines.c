@@ -16,19 +16,55 @@ uint32_t lines_largest_patch(const glb_frame *frame)
     return largest;
 }
 
-/* `vertices` of all patches, each at its strands' place. */
-static awt_status read_patches(const glb_frame *frame, draco_reader *reader, const uint16_t *indices,
-                               lines_decode *other, float *vertices, awt_error *error)
+/* What reading a frame's patches needs. */
+typedef struct lines_job {
+    const glb_frame *frame;
+    draco_reader *reader;
+    draco_kind kind;
+    lines_decode *other;
+    float *vertices; /* of all patches, each at its strands' place */
+} lines_job;
+
+static draco_source source_of(const lines_job *job, uint32_t patch_number)
 {
+    const glb_frame *frame = job->frame;
+    const glb_patch *patch = &frame->patches[patch_number];
     const size_t a_strand = (size_t)frame->points_per_strand * topology_vertices_a_point(frame->kind) * 3;
+    return (draco_source){.bytes = frame->binary + patch->offset,
+                          .size = patch->size,
+                          .vertices = patch->vertices,
+                          .triangles = patch->triangles,
+                          .positions = job->vertices + patch->first_strand * a_strand};
+}
+
+/* Patches first .. end - 1, of which our reader does not know one at least: each by whoever reads it. */
+static awt_status read_one_by_one(const lines_job *job, uint32_t first, uint32_t end, awt_error *error)
+{
     awt_status status = AWT_OK;
-    for (uint32_t i = 0; i < frame->patch_count && status == AWT_OK; i++) {
-        const glb_patch *patch = &frame->patches[i];
-        const unsigned char *data = frame->binary + patch->offset;
-        float *here = vertices + patch->first_strand * a_strand;
-        if (!draco_read(reader, frame->extra, data, patch->size, indices, patch->vertices, patch->triangles, here)) {
-            status = other ? other(data, patch->size, indices, patch->vertices, patch->triangles, here, error)
-                           : error_set(error, AWT_BAD_FORMAT, "a patch's Draco data is not what awtd's encoder writes");
+    for (uint32_t i = first; i < end && status == AWT_OK; i++) {
+        const draco_source sources[RANS_LANES] = {source_of(job, i)}, *s = &sources[0];
+        if (!draco_read(job->reader, &job->kind, sources)) {
+            status =
+                job->other
+                    ? job->other(s->bytes, s->size, job->kind.indices, s->vertices, s->triangles, s->positions, error)
+                    : error_set(error, AWT_BAD_FORMAT, "a patch's Draco data is not what awtd's encoder writes");
+        }
+    }
+    return status;
+}
+
+static awt_status read_patches(const lines_job *job, awt_error *error)
+{
+    const uint32_t count = job->frame->patch_count;
+    awt_status status = AWT_OK;
+    for (uint32_t i = 0; i < count && status == AWT_OK; i += RANS_LANES) {
+        const uint32_t end = count - i < RANS_LANES ? count : i + RANS_LANES;
+        draco_source sources[RANS_LANES] = {{0}};
+        for (uint32_t k = i; k < end; k++) {
+            sources[k - i] = source_of(job, k);
+        }
+        if (!draco_read(job->reader, &job->kind, sources)) {
+            status = read_one_by_one(job, i, end, error);
         }
     }
     return status;
@@ -55,7 +91,8 @@ static awt_status read_vertices(const glb_frame *frame, lines_decode *other, flo
                                      topology_triangles(frame->kind, largest, per_strand), &reader, error);
     }
     if (status == AWT_OK) {
-        status = read_patches(frame, reader, indices, other, vertices, error);
+        const lines_job job = {frame, reader, {.indices = indices, .extra = frame->extra}, other, vertices};
+        status = read_patches(&job, error);
     }
     draco_reader_destroy(reader);
     free(indices);

@@ -210,3 +210,49 @@ void quantise_sum_up(int bits, const uint16_t *symbols, size_t count, uint16_t *
         numbers[i + 2] = (uint16_t)z;
     }
 }
+
+/* `origin` is repeated over the block. */
+static void place_block(const uint16_t *restrict numbers, const float *restrict origin, float step,
+                        float *restrict positions)
+{
+    for (int k = 0; k < BLOCK; k++) {
+        positions[k] = (float)numbers[k] * step + origin[k];
+    }
+}
+
+static uint16_t or_block(uint16_t all, const uint16_t *symbols)
+{
+    uint16_t block[BLOCK / 6] = {0};
+    for (int k = 0; k < BLOCK; k++) {
+        block[k % (BLOCK / 6)] |= symbols[k];
+    }
+    for (int k = 0; k < BLOCK / 6; k++) {
+        all |= block[k];
+    }
+    return all;
+}
+
+bool quantise_positions(const draco_box *box, uint16_t *symbols, size_t count, float *positions)
+{
+    const float step = draco_box_step(box);
+    const size_t coordinates = 3 * count, whole = coordinates / BLOCK * BLOCK;
+    uint16_t all = 0;
+    float origin[BLOCK];
+    for (int k = 0; k < BLOCK; k++) {
+        origin[k] = box->origin[k % 3];
+    }
+    for (size_t i = 0; i < whole; i += BLOCK) {
+        all = or_block(all, symbols + i);
+    }
+    for (size_t i = whole; i < coordinates; i++) {
+        all |= symbols[i];
+    }
+    quantise_sum_up(box->bits, symbols, count, symbols);
+    for (size_t i = 0; i < whole; i += BLOCK) {
+        place_block(symbols + i, origin, step, positions + i);
+    }
+    for (size_t i = whole; i < coordinates; i++) {
+        positions[i] = (float)symbols[i] * step + origin[i - whole];
+    }
+    return all >> box->bits == 0;
+}

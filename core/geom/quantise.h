@@ -49,5 +49,8 @@ quantise_findings quantise_number_differences(int bits, const uint16_t *numbers,
 
 /* The way back: `numbers` [count][3] from `symbols` [count][3], each below 2^bits. May be done in place. */
 void quantise_sum_up(int bits, const uint16_t *symbols, size_t count, uint16_t *numbers);
+/* The same farther, to `positions` [count][3]; `symbols` become the numbers. False: a symbol is none of numbers of the
+ * box's bits. */
+bool quantise_positions(const draco_box *box, uint16_t *symbols, size_t count, float *positions);
 
 #endif

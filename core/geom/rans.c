@@ -270,19 +270,20 @@ static size_t sure_symbols(const rans_target *target, const rans_reader *reader,
     return bytes < symbols ? bytes : symbols;
 }
 
-/* The first stream that is still to be decoded, or RANS_LANES. */
-static int first_left(const bool left[RANS_LANES])
+/* How many streams are still to be decoded; *any becomes the last of them. */
+static int count_left(const bool left[RANS_LANES], int *any)
 {
-    int k = 0;
-    while (k < RANS_LANES && !left[k]) {
-        k++;
+    int count = 0;
+    for (int k = 0; k < RANS_LANES; k++) {
+        count += left[k];
+        *any = left[k] ? k : *any;
     }
-    return k;
+    return count;
 }
 
 bool rans_decode_lanes(const rans_target targets[RANS_LANES])
 {
-    enum { WORTH_IT = 8 };
+    enum { WORTH_IT = 8, LANES_WORTH_IT = 3 /* fewer are faster one after the other */ };
     rans_target lanes[RANS_LANES]; /* one that is not used, or at its end, does what another does, to the same place */
     rans_reader readers[RANS_LANES];
     bool left[RANS_LANES], right = true;
@@ -294,7 +295,7 @@ bool rans_decode_lanes(const rans_target targets[RANS_LANES])
         readers[k].state = left[k] ? take_state(&targets[k].source, &readers[k].left) : 0;
         right = right && (!left[k] || readers[k].state != 0);
     }
-    for (int any = first_left(left); right && any < RANS_LANES; any = first_left(left)) {
+    for (int any = 0, count = count_left(left, &any); right && count > 0; count = count_left(left, &any)) {
         size_t sure = SIZE_MAX;
         int least = any;
         for (int k = 0; k < RANS_LANES; k++) {
@@ -304,7 +305,7 @@ bool rans_decode_lanes(const rans_target targets[RANS_LANES])
             least = here < sure ? k : least;
             sure = here < sure ? here : sure;
         }
-        if (sure >= WORTH_IT) {
+        if (sure >= WORTH_IT && count >= LANES_WORTH_IT) {
             take_four(lanes, readers, done, sure);
             done += sure;
         } else {

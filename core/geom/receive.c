@@ -13,18 +13,35 @@
 
 /* ---- guides */
 
-/* One patch of guides into its place; `turns` holds those of the largest. */
-static bool read_patch(const geom_binding *binding, const glb_frame *frame, const glb_patch *patch,
-                       draco_reader *reader, const uint16_t *indices, int16_t *turns, geom_guides *out)
+/* Sections before a patch. */
+static size_t patch_first(const glb_frame *frame, const glb_patch *patch)
 {
-    const size_t first = (size_t)patch->first_strand * frame->points_per_strand;
-    const guides_part part = {patch->first_strand, patch->strands};
-    float *centres = out->centres + 3 * first, *frames = out->frames + 4 * first;
-    if (!draco_read_turns(reader, frame->attributes.turn_bits, frame->binary + patch->offset, patch->size, indices,
-                          patch->vertices, patch->triangles, centres, turns)) {
+    return (size_t)patch->first_strand * frame->points_per_strand;
+}
+
+/* Patches number `first` and the next few into their places; `turns` holds those of RANS_LANES patches. */
+static bool read_some(const geom_binding *binding, const glb_frame *frame, uint32_t first, draco_reader *reader,
+                      const draco_kind *kind, int16_t *const turns[RANS_LANES], geom_guides *out)
+{
+    draco_source sources[RANS_LANES] = {{0}};
+    const uint32_t left = frame->patch_count - first, count = left < RANS_LANES ? left : RANS_LANES;
+    for (uint32_t k = 0; k < count; k++) {
+        const glb_patch *patch = &frame->patches[first + k];
+        sources[k] = (draco_source){.bytes = frame->binary + patch->offset,
+                                    .size = patch->size,
+                                    .vertices = patch->vertices,
+                                    .triangles = patch->triangles,
+                                    .positions = out->centres + 3 * patch_first(frame, patch),
+                                    .turns = turns[k]};
+    }
+    if (!draco_read(reader, kind, sources)) {
         return false;
     }
-    guides_frames(binding, part, turns, (quat *)(void *)frames);
+    for (uint32_t k = 0; k < count; k++) {
+        const glb_patch *patch = &frame->patches[first + k];
+        float *frames = out->frames + 4 * patch_first(frame, patch);
+        guides_frames(binding, (guides_part){patch->first_strand, patch->strands}, turns[k], (quat *)(void *)frames);
+    }
     return true;
 }
 
@@ -33,20 +50,24 @@ static awt_status read_patches(const geom_binding *binding, const glb_frame *fra
     const uint32_t largest = lines_largest_patch(frame), sections = frame->points_per_strand;
     const size_t vertices = (size_t)largest * sections;
     uint16_t *indices = lines_indices(frame);
-    int16_t *turns = calloc(vertices, 3 * sizeof *turns);
+    int16_t *memory = calloc(RANS_LANES * vertices, 3 * sizeof *memory), *turns[RANS_LANES];
     draco_reader *reader = NULL;
-    awt_status status = indices && turns ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
+    const draco_kind kind = {.indices = indices, .turn_bits = frame->attributes.turn_bits};
+    awt_status status = indices && memory ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
     if (status == AWT_OK) {
         status =
             draco_reader_create((uint32_t)vertices, topology_triangles(frame->kind, largest, sections), &reader, error);
     }
-    for (uint32_t i = 0; i < frame->patch_count && status == AWT_OK; i++) {
-        if (!read_patch(binding, frame, &frame->patches[i], reader, indices, turns, out)) {
+    for (size_t k = 0; k < RANS_LANES && status == AWT_OK; k++) {
+        turns[k] = memory + 3 * vertices * k;
+    }
+    for (uint32_t i = 0; i < frame->patch_count && status == AWT_OK; i += RANS_LANES) {
+        if (!read_some(binding, frame, i, reader, &kind, turns, out)) {
             status = error_set(error, AWT_BAD_FORMAT, "a patch's Draco data is not what awtd's encoder writes");
         }
     }
     draco_reader_destroy(reader);
-    free(turns);
+    free(memory);
     free(indices);
     return status;
 }

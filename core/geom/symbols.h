@@ -65,6 +65,21 @@ typedef struct symbols_tables {
 bool symbols_read(const unsigned char **at, const unsigned char *end, uint32_t alphabet, symbols_tables *tables,
                   uint16_t *symbols, size_t count);
 
+/* A run on its way in: its rANS data wait to be decoded. */
+typedef struct symbols_waiting {
+    symbols_scheme scheme;
+    uint32_t alphabet;
+    size_t count;
+    uint16_t *symbols;  /* [count] */
+    rans_target target; /* for rans_decode_lanes; of a precision of SYMBOLS_READ_PRECISION at most */
+} symbols_waiting;
+
+/* The same in two halves, so that several runs are decoded at once: before, which moves *at behind the rANS data, and
+ * after, which moves it behind the run. `tables` and `symbols` are in use in between. */
+bool symbols_begin(const unsigned char **at, const unsigned char *end, uint32_t alphabet, symbols_tables *tables,
+                   uint16_t *symbols, size_t count, symbols_waiting *out);
+bool symbols_end(const unsigned char **at, const unsigned char *end, const symbols_waiting *run);
+
 /* All of a run in the raw scheme but its data, which become *out for rans_decode_lanes; *at moves behind them. `tables`
  * is in use until then. False: there is none. */
 bool symbols_open(const unsigned char **at, const unsigned char *end, uint32_t alphabet, symbols_tables *tables,

@@ -1,6 +1,7 @@
 /* symbols_read.c: the half of symbols.h that reads what a stranger sent. */
 #include "geom/symbols.h"
 
+#include "base/bytes.h"
 #include "geom/varint.h"
 
 enum { GREATEST_LENGTH = 12, GREATEST_TAG = 15 };
@@ -72,29 +73,12 @@ static bool open_coded(const unsigned char **at, const unsigned char *end, uint3
     return true;
 }
 
-/* Table and data of `count` symbols. */
-static bool take_coded(const unsigned char **at, const unsigned char *end, uint32_t alphabet, int precision,
-                       symbols_tables *tables, uint16_t *symbols, size_t count)
-{
-    rans_source source;
-    return open_coded(at, end, alphabet, precision, tables, &source) && rans_decode(&source, symbols, count);
-}
-
 /* Up to 8 bytes from *at on, the least first. */
 static uint64_t peek(const unsigned char *at, const unsigned char *end)
 {
     uint64_t value = 0;
     for (int k = 0; k < 8; k++) {
         value |= at + k < end ? (uint64_t)at[k] << (8 * k) : 0;
-    }
-    return value;
-}
-
-static inline uint64_t peek_eight(const unsigned char *at)
-{
-    uint64_t value = 0;
-    for (int k = 0; k < 8; k++) {
-        value |= (uint64_t)at[k] << (8 * k);
     }
     return value;
 }
@@ -112,7 +96,7 @@ static bool take_bits(const unsigned char **at, const unsigned char *end, uint32
         if (length < 1 || length > GREATEST_TAG || (size_t)(end - from) * 8 < done + 3 * (size_t)length) {
             return false;
         }
-        uint64_t bits = (end - from >= 8 ? peek_eight(from) : peek(from, end)) >> done;
+        uint64_t bits = (end - from >= 8 ? load_u64(from) : peek(from, end)) >> done;
         const uint32_t mask = (1u << length) - 1;
         uint16_t *s = symbols + 3 * i;
         s[0] = (uint16_t)(bits & mask);
@@ -139,15 +123,29 @@ bool symbols_open(const unsigned char **at, const unsigned char *end, uint32_t a
                       out);
 }
 
+bool symbols_begin(const unsigned char **at, const unsigned char *end, uint32_t alphabet, symbols_tables *tables,
+                   uint16_t *symbols, size_t count, symbols_waiting *out)
+{
+    const bool tagged = *at < end && **at == SYMBOLS_TAGGED && count % 3 == 0;
+    *out = (symbols_waiting){tagged ? SYMBOLS_TAGGED : SYMBOLS_RAW, alphabet, count, symbols, {{0}, symbols, count}};
+    if (!tagged) {
+        return symbols_open(at, end, alphabet, tables, &out->target.source);
+    }
+    ++*at;
+    out->target.symbols = symbols + 2 * (count / 3);
+    out->target.count = count / 3;
+    return open_coded(at, end, GREATEST_TAG + 1, RANS_LEAST_PRECISION, tables, &out->target.source);
+}
+
+bool symbols_end(const unsigned char **at, const unsigned char *end, const symbols_waiting *run)
+{
+    return run->scheme == SYMBOLS_RAW || take_bits(at, end, run->alphabet, run->symbols, run->count / 3);
+}
+
 bool symbols_read(const unsigned char **at, const unsigned char *end, uint32_t alphabet, symbols_tables *tables,
                   uint16_t *symbols, size_t count)
 {
-    if (*at < end && **at == SYMBOLS_TAGGED && count % 3 == 0) {
-        uint16_t *tags = symbols + 2 * (count / 3);
-        ++*at;
-        return take_coded(at, end, GREATEST_TAG + 1, RANS_LEAST_PRECISION, tables, tags, count / 3) &&
-               take_bits(at, end, alphabet, symbols, count / 3);
-    }
-    rans_source source;
-    return symbols_open(at, end, alphabet, tables, &source) && rans_decode(&source, symbols, count);
+    symbols_waiting run;
+    return symbols_begin(at, end, alphabet, tables, symbols, count, &run) &&
+           rans_decode(&run.target.source, run.target.symbols, run.target.count) && symbols_end(at, end, &run);
 }

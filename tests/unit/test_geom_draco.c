@@ -70,7 +70,10 @@ static bool read_row(const row *r, const unsigned char *bytes, size_t size, floa
 {
     draco_reader *reader = NULL;
     CHECK_INT(draco_reader_create(r->vertices, r->triangles, &reader, NULL), AWT_OK);
-    bool read = draco_read(reader, 0, bytes, size, r->indices, r->vertices, r->triangles, positions);
+    const draco_kind kind = {.indices = r->indices};
+    const draco_source sources[RANS_LANES] = {
+        {.bytes = bytes, .size = size, .vertices = r->vertices, .triangles = r->triangles, .positions = positions}};
+    bool read = draco_read(reader, &kind, sources);
     draco_reader_destroy(reader);
     return read;
 }
