@@ -80,6 +80,28 @@ wanted() {
     [ -z "${ONLY:-}" ] || [ "$ONLY" = "$1" ]
 }
 
+# link RTT SHARE: four heads at 30 frames a second, watched over a link of that round trip, ms, which carries SHARE times
+# the bytes that they need. What it can carry must come, and no frame be older on arrival than the way and two of its
+# own transfers.
+link() {
+    fps=$(awk -v share="$2" 'BEGIN { printf "%.1f", share < 1 ? 30 * share : 30 }')
+    rate=$(awk -v bytes="$frame_bytes" -v share="$2" 'BEGIN { printf "%d", 30 * bytes * share }')
+    credit=$(awk -v rtt="$1" -v fps="$fps" 'BEGIN { c = rtt * fps / 1000; printf "%d", 1 + c + (c > int(c)) }')
+    "$build/awt-relay" --listen 127.0.0.1:0 --connect "$address" --delay $(($1 / 2)) --rate "$rate" >"$work/relay" &
+    relay=$!
+    sleep 0.5
+    "$build/awt-load" --connect "$(sed -n 's/^listening on //p' "$work/relay")" \
+        --token-file "$work/state/token" --duration "$seconds" --scenario stream --free --no-floor --forests 4 --connections 4 \
+        --rate 30 --credit "$credit" --quiet >"$work/link" 2>&1
+    kill "$relay" 2>/dev/null
+    wait "$relay" 2>/dev/null
+    echo "round trip $1 ms, $2 of the bytes needed (a window of $credit): $(figure link awtd came) frames a second of $(figure link awtd offered), p99 of their age $(figure link 'age of frames' p99) us"
+    see 4 "link of $1 ms that carries $2 of what is needed: frames, Hz" "$(awk -v c="$(figure link awtd came)" 'BEGIN { if (c > 0) printf "%.1f", c / 4 }')" \
+        ">=" "$(awk -v fps="$fps" 'BEGIN { printf "%.1f", 0.97 * fps }')"
+    see 4 "  and the p99 of their age, ms" "$(awk -v a="$(figure link 'age of frames' p99)" 'BEGIN { if (a > 0) printf "%.1f", a / 1000 }')" \
+        "<=" "$(awk -v rtt="$1" -v rate="$rate" -v bytes="$frame_bytes" 'BEGIN { printf "%.1f", rtt / 2 + 2000 * bytes / rate }')"
+}
+
 start
 
 if wanted 1; then
@@ -103,6 +125,16 @@ if wanted 3; then
         see 3 "fan-out of a 20 KB frame to 64: frames a second, awtd / bare" "$(figure fan 'awtd / bare' came)" ">=" 0.8
 fi
 if wanted 4; then
+    echo
+    "$build/awt-load" --connect "$address" --token-file "$work/state/token" --duration 2 --scenario stream --no-floor --connections 4 \
+        --forests 4 --rate 30 --quiet >"$work/frames"
+    frame_bytes=$(sed -n 's/.*; \([0-9]*\) bytes each.*/\1/p' "$work/frames")
+    busy=
+    for share in 1.5 0.5; do
+        for round_trip in 20 100 200; do
+            link $round_trip $share
+        done
+    done
     load slow --scenario slow-viewer --duration 20 &&
         see 4 "a tenth of the viewers stalled: the others' p99, with / without" \
             "$(sed -n 's/.*median of .* pairs: //p' "$work/slow")" "<=" 1.10
