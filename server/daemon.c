@@ -7,6 +7,7 @@
 #include "drain.h"
 #include "health.h"
 #include "net.h"
+#include "random.h"
 #include "reload.h"
 #include "restore.h"
 #include "token.h"
@@ -206,6 +207,10 @@ bool daemon_run(const config *asked, char *error, size_t error_size)
     bool served = false;
     log_set_level(asked->level);
     log_set_format(asked->format);
+    if (!random_open()) {
+        snprintf(error, error_size, "/dev/urandom cannot be opened: %s; tokens are made of it", strerror(errno));
+        return false;
+    }
     if (!open_token(asked, &options, error, error_size)) {
         return false;
     }

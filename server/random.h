@@ -5,7 +5,11 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Fills from /dev/urandom. False: it cannot be read (no descriptor left, or no such device). */
+/* Opens /dev/urandom for good, so that a process which runs out of descriptors later still has it; random_fill does so
+ * otherwise. Any thread. False: errno says why. */
+bool random_open(void);
+
+/* Fills from /dev/urandom. Any thread. False: it cannot be read (no descriptor left, or no such device). */
 bool random_fill(void *bytes, size_t size);
 
 #endif
