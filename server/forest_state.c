@@ -53,7 +53,7 @@ static unsigned char *save(const forest_work *w, size_t *size, awt_error *error)
     return bytes;
 }
 
-void forest_state_keep(forest_work *w)
+bool forest_state_keep(forest_work *w)
 {
     awt_error error = {0};
     size_t size = 0;
@@ -61,10 +61,14 @@ void forest_state_keep(forest_work *w)
     if (!bytes) {
         log_write(LOG_ERROR, "forest not saved", "forest=%016llx why=\"%s\"", (unsigned long long)w->handle,
                   error.text);
-    } else if (!keeper_write(w->keeper, w->handle, bytes, size)) {
+        return false;
+    }
+    const bool taken = keeper_write(w->keeper, w->handle, bytes, size);
+    if (!taken) {
         log_write(LOG_WARN, "forest not saved yet", "forest=%016llx why=\"too much waits for the disk\"",
                   (unsigned long long)w->handle);
     }
+    return taken;
 }
 
 awt_status forest_state_restore(forest_work *w, awt_error *error)

@@ -9,9 +9,9 @@
  * AWT_NO_MEMORY. */
 awt_status forest_state_show(forest_work *work, awt_error *error);
 
-/* Hands the state, with what stands in work->saving, to the keeper. What fails is logged: the next round tries again.
- */
-void forest_state_keep(forest_work *work);
+/* Hands the state, with what stands in work->saving, to the keeper. False: that failed and is logged; the next round is
+ * to try again. */
+bool forest_state_keep(forest_work *work);
 
 /* Makes groom and forest of the recipe's state, and sets what the recipe left open as it is there. As
  * awt_snapshot_restore. */

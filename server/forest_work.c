@@ -234,9 +234,7 @@ static void run(forest_work *w, int64_t begun_us)
     if (status == AWT_OK || (!w->making && w->looks)) {
         draw(w, begun_us);
     }
-    if (w->keeper && w->forest) {
-        forest_state_keep(w);
-    }
+    w->kept = w->keeper && w->forest && forest_state_keep(w);
 }
 
 void forest_work_run(job *work)

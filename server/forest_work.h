@@ -43,6 +43,7 @@ typedef struct forest_work {
     /* the result; completions.c takes it */
     bool stepped;         /* the forest was made or advanced */
     bool asleep;          /* after its last step nothing of it moves */
+    bool kept;            /* the keeper has taken the state */
     picture *drawn;       /* a reference; NULL: nothing was to be drawn, or `error` says why */
     picture *binding;     /* a reference, with the one view PICTURE_BINDING */
     picture *state;       /* likewise PICTURE_STATE */

@@ -1,6 +1,7 @@
 /* keeper.c: see keeper.h. */
 #include "keeper.h"
 #include "log.h"
+#include "metrics.h"
 #include "thread.h"
 
 #include <errno.h>
@@ -23,10 +24,13 @@ struct keeper {
     pthread_mutex_t mutex; /* guards all that follows */
     pthread_cond_t changed;
     errand *first, **end;
+    errand *lost; /* without bytes */
     uint64_t waiting_bytes;
-    bool busy, stopping, failed;
+    bool busy, stopping;
+    bool forgot; /* there was no memory to remember that a file is to go */
     keeper_counts counts;
     pthread_t thread;
+    bool in_trouble; /* the thread's own: what it tried last has failed */
 };
 
 /* ---- the thread -------------------------------------------------------------------------------------------------- */
@@ -41,20 +45,47 @@ static errand *take_first(keeper *k)
     return e;
 }
 
-static bool run(const keeper *k, const errand *e)
+/* What helps against it. */
+static const char *advice(int why)
+{
+    switch (why) {
+    case ENOSPC:
+    case EFBIG:
+    case EDQUOT:
+        return "make room there";
+    case EROFS:
+    case EACCES:
+    case EPERM:
+        return "let awtd write there";
+    case ENOENT:
+    case ENOTDIR:
+    case EISDIR:
+        return "put the folder back";
+    default:
+        return "look at the disk";
+    }
+}
+
+static bool run(keeper *k, const errand *e)
 {
     bool done = e->bytes ? vault_write(&k->place, e->handle, e->bytes, e->size) : vault_remove(&k->place, e->handle);
+    const int why = errno;
+    char folder[LOG_QUOTED];
+    log_quote(k->place.folder, strlen(k->place.folder), folder);
     if (!done) {
-        log_write(LOG_ERROR, "forest not saved", "forest=%016" PRIx64 " folder=%s why=\"%s\"", e->handle,
-                  k->place.folder, strerror(errno));
+        log_write(LOG_ERROR, e->bytes ? "forest not saved" : "file of a forest not removed",
+                  "forest=%016" PRIx64 " folder=%s why=\"%s\" do=\"%s: the next round tries again\"", e->handle, folder,
+                  strerror(why), advice(why));
+    } else if (k->in_trouble) {
+        log_write(LOG_INFO, "forests can be saved again", "folder=%s", folder);
     }
+    k->in_trouble = !done;
     return done;
 }
 
-static void note(keeper *k, const errand *e, bool done)
+/* Takes the errand. */
+static void note(keeper *k, errand *e, bool done)
 {
-    k->failed = k->failed || !done;
-    k->counts.failed += !done;
     if (done && e->bytes) {
         k->counts.written++;
         k->counts.bytes += e->size;
@@ -62,6 +93,17 @@ static void note(keeper *k, const errand *e, bool done)
     } else if (done) {
         k->counts.removed++;
     }
+    metrics_count(METRIC_SAVES, done && e->bytes);
+    free(e->bytes);
+    if (done) {
+        free(e);
+        return;
+    }
+    metrics_count(METRIC_SAVES_FAILED, 1);
+    k->counts.failed++;
+    k->counts.lost++;
+    *e = (errand){.next = k->lost, .handle = e->handle};
+    k->lost = e;
 }
 
 static void *keeper_main(void *argument)
@@ -80,8 +122,6 @@ static void *keeper_main(void *argument)
         pthread_mutex_lock(&k->mutex);
         k->busy = false;
         note(k, e, done);
-        free(e->bytes);
-        free(e);
         pthread_cond_broadcast(&k->changed);
     }
     pthread_mutex_unlock(&k->mutex);
@@ -125,6 +165,8 @@ void keeper_destroy(keeper *k)
     pthread_cond_broadcast(&k->changed);
     pthread_mutex_unlock(&k->mutex);
     pthread_join(k->thread, NULL);
+    while (keeper_take_lost(k) != 0) {
+    }
     pthread_cond_destroy(&k->changed);
     pthread_mutex_destroy(&k->mutex);
     free(k);
@@ -187,7 +229,7 @@ void keeper_remove(keeper *k, uint64_t handle)
     if (e) {
         replace(k, e, NULL, 0);
     } else {
-        k->failed = true;
+        k->forgot = true;
         k->counts.failed++;
     }
     pthread_mutex_unlock(&k->mutex);
@@ -198,14 +240,27 @@ void keeper_set_aside(keeper *k, uint64_t handle)
     vault_set_aside(&k->place, handle);
 }
 
+uint64_t keeper_take_lost(keeper *k)
+{
+    pthread_mutex_lock(&k->mutex);
+    errand *e = k->lost;
+    const uint64_t handle = e ? e->handle : 0;
+    if (e) {
+        k->lost = e->next;
+        k->counts.lost--;
+    }
+    pthread_mutex_unlock(&k->mutex);
+    free(e);
+    return handle;
+}
+
 bool keeper_drain(keeper *k)
 {
     pthread_mutex_lock(&k->mutex);
     while (k->first || k->busy) {
         pthread_cond_wait(&k->changed, &k->mutex);
     }
-    bool clean = !k->failed;
-    k->failed = false;
+    const bool clean = !k->lost && !k->forgot;
     pthread_mutex_unlock(&k->mutex);
     return clean;
 }

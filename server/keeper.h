@@ -1,7 +1,10 @@
 /* keeper.h: the thread that brings forests to the disk, so that nobody who simulates or serves ever waits for one.
  *
  * Bounded: what waits for a forest is replaced by what is newer of it, and all that waits together has a limit; beyond,
- * the newest is refused and counted, and the next round brings it. */
+ * the newest is refused and counted, and the next round brings it.
+ *
+ * What the disk does not take (it is full, the folder is gone) is logged with what to do, and its bytes are freed; the
+ * forest is remembered as lost, for the next round to try again. */
 #ifndef KEEPER_H
 #define KEEPER_H
 
@@ -14,6 +17,7 @@ typedef struct keeper_counts {
     uint64_t bytes;                             /* written */
     int64_t last_written_us;                    /* monotonic clock; 0: none yet */
     uint32_t waiting;
+    uint32_t lost; /* files that are not on the disk, or still there, as they should */
 } keeper_counts;
 
 /* Starts the thread. NULL: no memory or no thread. The vault is copied. */
@@ -30,7 +34,11 @@ void keeper_remove(keeper *k, uint64_t handle);
 /* Puts the forest's file out of the way (vault_set_aside), now. */
 void keeper_set_aside(keeper *k, uint64_t handle);
 
-/* Waits until nothing waits. False: something could not be written since the last call. */
+/* The handle of a forest whose file could not be written or removed, which is forgotten with this call: the caller has
+ * it written or removed anew. 0: there is none. Any thread. */
+uint64_t keeper_take_lost(keeper *k);
+
+/* Waits until nothing waits. False: something is lost. */
 bool keeper_drain(keeper *k);
 
 keeper_counts keeper_count(keeper *k);

@@ -198,7 +198,7 @@ resident *registry_take_back(job *done)
         r->shown_us = r->work.free.to_us + r->work.dropped_us;
     }
     r->asleep = r->work.asleep;
-    r->kept_sequence = r->work.keeper ? r->work.sequence : r->kept_sequence;
+    r->kept_sequence = r->work.kept ? r->work.sequence : r->kept_sequence;
     for (int i = 0; i < FORM_COUNT && r->work.draws; i++) {
         r->form_bytes[i] = drawing_form_bytes(r->work.draws, i);
     }

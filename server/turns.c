@@ -225,8 +225,9 @@ void turns_attend(registry *reg, resident *r)
 
 void turns_keep(registry *reg, resident *r)
 {
-    if (reg->keeper && r->ready && !r->doomed && r->sequence != r->kept_sequence) {
+    if (reg->keeper && r->ready && !r->doomed && (r->keep_lost || r->sequence != r->kept_sequence)) {
         r->keep_due = true;
+        r->keep_lost = false;
         turns_attend(reg, r);
     }
 }

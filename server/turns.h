@@ -24,7 +24,8 @@ bool turns_push(registry *reg, resident *r, forest_input *input);
 /* Has the present state drawn again, for a subscription that lacks its view. */
 void turns_redraw(registry *reg, resident *r, int64_t now_us);
 
-/* Has the forest's state brought to the disk, unless nothing has changed since. Nothing without a keeper. */
+/* Has the forest's state brought to the disk, unless nothing has changed since that was done last. Nothing without a
+ * keeper. */
 void turns_keep(registry *reg, resident *r);
 
 /* Who looks at the forest has changed: a free-running one may have its next turn at another time. */

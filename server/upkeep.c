@@ -41,8 +41,24 @@ static void end_left_forests(service *shared, int64_t now_us)
     }
 }
 
+/* What did not get to the disk, or from it, is to be tried again: once, for it may be lost again at once. */
+static void keep_lost(service *shared)
+{
+    keeper *k = shared->forests.keeper;
+    for (uint32_t n = k ? keeper_count(k).lost : 0; n > 0; n--) {
+        const uint64_t handle = keeper_take_lost(k);
+        resident *r = registry_find(&shared->forests, handle);
+        if (r) {
+            r->keep_lost = true;
+        } else if (handle != 0) {
+            keeper_remove(k, handle);
+        }
+    }
+}
+
 void upkeep_keep_all(service *shared)
 {
+    keep_lost(shared);
     for (resident *r = shared->forests.first; r; r = r->next) {
         turns_keep(&shared->forests, r);
     }

@@ -1,6 +1,6 @@
 /* upkeep.h: what only the clock brings about in the service as a whole: PROGRESS for those who wait for hair, the end
- * of what was parked, the end of forests that nobody has had open for long, the
- * rounds of bringing forests to the disk. Under the service's lock. */
+ * of what was parked, the end of forests that nobody has had open for long, the rounds of bringing forests to the
+ * disk. Under the service's lock. */
 #ifndef UPKEEP_H
 #define UPKEEP_H
 
@@ -11,7 +11,8 @@ int64_t upkeep_due_us(const service *shared);
 /* Does what is due. */
 void upkeep_do(service *shared, int64_t now_us);
 
-/* Has every forest that changed brought to the disk, now; nothing without a keeper. */
+/* Has every forest that changed brought to the disk, now, and those that could not be when it was tried last; nothing
+ * without a keeper. */
 void upkeep_keep_all(service *shared);
 /* True if every change that upkeep_keep_all was asked for has been handed to the keeper. */
 bool upkeep_kept_all(const service *shared);

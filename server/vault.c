@@ -34,10 +34,18 @@ static uint64_t handle_of(const char *name, const char *ending)
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/* Writes and brings to the disk. */
-static bool write_file(const char *path, const void *bytes, size_t size)
+static int create(const char *path)
 {
-    int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, FILE_MODE);
+    return open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, FILE_MODE);
+}
+
+/* Writes and brings to the disk. The folder is made again where somebody has removed it. */
+static bool write_file(const vault *v, const char *path, const void *bytes, size_t size)
+{
+    int fd = create(path);
+    if (fd < 0 && errno == ENOENT && mkdir(v->folder, FOLDER_MODE) == 0) {
+        fd = create(path);
+    }
     if (fd < 0) {
         return false;
     }
@@ -70,7 +78,7 @@ bool vault_write(const vault *v, uint64_t handle, const void *bytes, size_t size
     char place[VAULT_PATH], beside[VAULT_PATH];
     path_of(v, handle, whole, place);
     path_of(v, handle, part, beside);
-    if (!write_file(beside, bytes, size)) {
+    if (!write_file(v, beside, bytes, size)) {
         return false;
     }
     if (rename(beside, place) != 0) {
@@ -86,7 +94,7 @@ bool vault_remove(const vault *v, uint64_t handle)
 {
     char place[VAULT_PATH];
     path_of(v, handle, whole, place);
-    return unlink(place) == 0 || errno == ENOENT;
+    return unlink(place) == 0 || errno == ENOENT || errno == ENOTDIR;
 }
 
 void vault_set_aside(const vault *v, uint64_t handle)

@@ -18,7 +18,8 @@ typedef struct vault {
  * half written when a daemon died. False: `error` says why and what to do. */
 bool vault_open(vault *v, const char *state_directory, char *error, size_t error_size);
 
-/* Writes a forest's file whole, in place of an earlier one. False: the earlier one stands, and errno says why. */
+/* Writes a forest's file whole, in place of an earlier one, into the folder, which is made again if it was removed
+ * meanwhile. False: the earlier one stands, and errno says why. */
 bool vault_write(const vault *v, uint64_t handle, const void *bytes, size_t size);
 /* Nothing where there is none. False: errno says why. */
 bool vault_remove(const vault *v, uint64_t handle);

@@ -63,6 +63,9 @@ void wake_on_signals(wake *w)
     sigaction(SIGINT, &asked, NULL);
     sigaction(SIGUSR1, &asked, NULL);
     sigaction(SIGPIPE, &ignore, NULL);
+#ifdef SIGXFSZ
+    sigaction(SIGXFSZ, &ignore, NULL); /* a file that may not grow: write says so, and the keeper */
+#endif
 }
 
 static void on_hangup(int number)

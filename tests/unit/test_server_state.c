@@ -3,9 +3,11 @@
 #include "base/crc32c.h"
 #include "check.h"
 #include "folder_fixture.h"
+#include "log.h"
 #include "restore.h"
 #include "upkeep.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -255,6 +257,38 @@ TEST(server_brings_to_the_disk_what_changed_and_removes_what_ended)
     CHECK_INT(registry_ready_count(&k.shared.forests), 1);
     keep_round(&k); /* nothing has changed since it was read */
     CHECK_U64(keeper_count(k.keeper).written, 0);
+    end(&k);
+    folder_remove(state);
+}
+
+TEST(server_brings_to_the_disk_in_the_next_round_what_it_could_not_in_this)
+{
+    char state[FOLDER_PATH], away[FOLDER_PATH + 8];
+    kept_service k = {0};
+    folder_make(state);
+    snprintf(away, sizeof away, "%s/away", state);
+    log_set_level(LOG_ERROR);
+    begin(&k, state);
+    fake_client *client = fake_client_open(&k.shared);
+    const uint64_t stays = fake_make_forest(&k.shared, client, 5).forest;
+    keep_round(&k);
+    drive(&k.shared, client, stays, 1, 2);
+    CHECK_INT(rename(k.place.folder, away), 0);
+    close(open(k.place.folder, O_WRONLY | O_CREAT, 0600)); /* a file stands in the way */
+    fake_now_us += KEEP_US;
+    upkeep_do(&k.shared, fake_now_us);
+    fake_work(&k.shared, NULL);
+    CHECK(!keeper_drain(k.keeper));
+    CHECK_INT(keeper_count(k.keeper).lost, 1);
+    CHECK_INT(unlink(k.place.folder), 0);
+    CHECK_INT(rename(away, k.place.folder), 0);
+    const uint64_t written = keeper_count(k.keeper).written;
+    keep_round(&k); /* nothing has changed since */
+    CHECK_U64(keeper_count(k.keeper).written, written + 1);
+    CHECK_INT(keeper_count(k.keeper).lost, 0);
+    keep_round(&k);
+    CHECK_U64(keeper_count(k.keeper).written, written + 1);
+    fake_client_destroy(client);
     end(&k);
     folder_remove(state);
 }

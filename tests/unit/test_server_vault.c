@@ -6,11 +6,14 @@
 #include "saved.h"
 #include "vault.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -132,6 +135,40 @@ static unsigned char *heap_copy(const char *text)
     return bytes;
 }
 
+/* No file of this process can grow longer than that. Nothing is to be checked meanwhile: it could not be printed. */
+typedef struct disk_room {
+    struct rlimit limit;
+    struct sigaction action;
+} disk_room;
+
+static disk_room disk_fill(rlim_t left)
+{
+    disk_room before;
+    sigaction(SIGXFSZ, &(struct sigaction){.sa_handler = SIG_IGN}, &before.action);
+    getrlimit(RLIMIT_FSIZE, &before.limit);
+    setrlimit(RLIMIT_FSIZE, &(struct rlimit){.rlim_cur = left, .rlim_max = before.limit.rlim_max});
+    return before;
+}
+
+static void disk_free(const disk_room *before)
+{
+    setrlimit(RLIMIT_FSIZE, &before->limit);
+    sigaction(SIGXFSZ, &before->action, NULL);
+}
+
+static int count_entries(const char *path)
+{
+    DIR *folder = opendir(path);
+    int count = 0;
+    for (const struct dirent *entry; folder && (entry = readdir(folder)) != NULL;) {
+        count += entry->d_name[0] != '.';
+    }
+    if (folder) {
+        closedir(folder);
+    }
+    return count;
+}
+
 TEST(keeper_writes_the_newest_of_each_forest_and_removes)
 {
     char state[FOLDER_PATH], text[32];
@@ -175,7 +212,54 @@ TEST(keeper_reports_what_could_not_be_written_and_goes_on)
     CHECK(!keeper_drain(k));
     CHECK_U64(keeper_count(k).failed, 1);
     CHECK_U64(keeper_count(k).written, 1);
-    CHECK(keeper_drain(k)); /* said once */
+    CHECK_U64(keeper_take_lost(k), 5);
+    CHECK_U64(keeper_take_lost(k), 0); /* said once */
+    CHECK(keeper_drain(k));
+    keeper_destroy(k);
+    folder_remove(state);
+}
+
+TEST(keeper_on_a_full_disk_leaves_the_earlier_file_and_writes_again_once_there_is_room)
+{
+    enum { ROOM = 16384, LARGE = 65536 };
+    char state[FOLDER_PATH];
+    vault v;
+    size_t size = 0;
+    unsigned char *bytes = NULL;
+    folder_make(state);
+    CHECK(open_vault(&v, state));
+    keeper *k = keeper_create(&v, no_time_us);
+    CHECK(keeper_write(k, 5, heap_copy("earlier"), 7) && keeper_drain(k));
+    const disk_room before = disk_fill(ROOM);
+    CHECK(keeper_write(k, 5, calloc(1, LARGE), LARGE));
+    const bool drained = keeper_drain(k);
+    disk_free(&before);
+    CHECK(!drained);
+    bytes = vault_read(&v, 5, &size);
+    CHECK_U64(size, 7);
+    CHECK_BYTES(bytes, "earlier", 7);
+    free(bytes);
+    CHECK_INT(count_entries(v.folder), 1); /* nothing half written takes what room there is */
+    CHECK_U64(keeper_take_lost(k), 5);
+    CHECK(keeper_write(k, 5, calloc(1, LARGE), LARGE) && keeper_drain(k));
+    bytes = vault_read(&v, 5, &size);
+    CHECK_U64(size, LARGE);
+    free(bytes);
+    keeper_destroy(k);
+    folder_remove(state);
+}
+
+TEST(keeper_makes_a_folder_again_that_was_removed)
+{
+    char state[FOLDER_PATH];
+    vault v;
+    folder_make(state);
+    CHECK(open_vault(&v, state));
+    keeper *k = keeper_create(&v, no_time_us);
+    CHECK_INT(rmdir(v.folder), 0);
+    keeper_remove(k, 7); /* which is not there anyway */
+    CHECK(keeper_write(k, 5, heap_copy("five"), 4) && keeper_drain(k));
+    CHECK_INT(count_files(&v).count, 1);
     keeper_destroy(k);
     folder_remove(state);
 }
