@@ -20,4 +20,4 @@ if ! { ${MAKE:-make} -s libraries config="$(basename "$build")" && "$python" -m 
 fi
 AWTD_LIBRARY=$(ls "$PWD/$build"/lib/libawtclient.so.*)
 export AWTD_LIBRARY
-"$work/venv/bin/python" -B tests/python/test_awtd.py "$build"
+"$work/venv/bin/python" -B tests/python/run.py "$build"

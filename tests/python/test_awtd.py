@@ -1,63 +1,35 @@
-"""test_awtd.py BUILD: the package awtd, as installed, before the daemon in folder BUILD; and the README's example."""
+"""The package awtd, and the README's example."""
 
 import os
 import re
 import subprocess
-import sys
-import tempfile
 import unittest
 
 import awtd
 import numpy as np
-from awtd import _library
-
-BUILD = sys.argv.pop() if len(sys.argv) > 1 else "build/release"
-TOP = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+from awtd import _library, _messages
+from harness import TOP, WithDaemon
 
 
-class Python(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.daemon = subprocess.Popen([os.path.join(BUILD, "awtd"), "--listen", "127.0.0.1:0", "--state-dir",
-                                       cls.folder.name], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        cls.address = cls.daemon.stdout.readline().removeprefix("listening on ").strip()
-        cls.token = os.path.join(cls.folder.name, "token")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.daemon.terminate()
-        cls.daemon.wait(30)
-        cls.daemon.stdout.close()
-        cls.folder.cleanup()
-
-    def connect(self):
-        client = awtd.connect(self.address, self.token)
-        self.addCleanup(client.close)
-        return client
-
-    def run_script(self, *arguments):
-        return subprocess.run([sys.executable, "-B", *arguments], cwd=self.folder.name, text=True,
-                              capture_output=True, timeout=60)
-
+class Package(WithDaemon):
     def test_structs_are_as_in_the_header(self):
         lines = ['#include "proto.h"', '#include "awtframes.h"', "#include <stdio.h>", "int main(void) {"]
         expected = []
-        for name, struct in _library.STRUCTS.items():
+        for name, struct in _messages.STRUCTS.items():
             for field, _ in struct._fields_:
                 lines.append(f'printf("%zu\\n", offsetof(struct proto_{name}, {field}));')
                 expected.append(getattr(struct, field).offset)
         for struct, name in ((_library.Shown, "awtframes_shown"), (_library.Error, "awtclient_error"),
-                             (_library.Options, "awtclient_options")):
+                             (_library.Options, "awtclient_options"), (_library.Transport, "awtlink_transport")):
             lines.append(f'printf("%zu\\n", sizeof({name}));')
             expected.append(_library.c.sizeof(struct))
         lines.append('printf("%zu\\n", offsetof(proto_message, as)); printf("%zu\\n", sizeof(proto_message)); }')
-        program = os.path.join(self.folder.name, "offsets")
+        program = self.path("offsets")
         subprocess.run(["cc", "-x", "c", "-I", f"{TOP}/proto", "-I", f"{TOP}/clients", "-o", program, "-"],
                        input="\n".join(lines), text=True, check=True)
         found = [int(n) for n in subprocess.check_output([program], text=True).split()]
-        self.assertEqual(found[:-1], expected + [_library.Message.as_.offset])
-        self.assertLessEqual(found[-1], _library.c.sizeof(_library.Message))
+        self.assertEqual(found[:-1], expected + [_messages.Message.as_.offset])
+        self.assertLessEqual(found[-1], _library.c.sizeof(_messages.Message))
 
     def test_hair_follows_the_head(self):
         forest = self.connect().create("long", strands=500, style_omega=20)
@@ -98,13 +70,13 @@ class Python(unittest.TestCase):
 
     def test_a_saved_frame_is_its_glb(self):
         frame = self.connect().create("short", strands=200).drive(16667)
-        path = os.path.join(self.folder.name, "hair.glb")
+        path = self.path("hair.glb")
         frame.save(path)
         with open(path, "rb") as file:
             self.assertEqual(file.read(), frame.glb)
         self.assertEqual(frame.glb[:4], b"glTF")
         with self.assertRaises(OSError):
-            frame.save(os.path.join(self.folder.name, "no", "folder.glb"))
+            frame.save(self.path("no", "folder.glb"))
 
     def test_errors_have_code_and_text(self):
         client = self.connect()
@@ -133,24 +105,17 @@ class Python(unittest.TestCase):
             blocks = re.findall(r"(?:^    .*\n|^\n(?=    ))+", file.read(), re.M)
         example = [b for b in blocks if "awtd.connect(" in b]
         self.assertEqual(len(example), 1)
-        path = os.path.join(self.folder.name, "example.py")
+        path = self.path("example.py")
         with open(path, "w", encoding="utf-8") as file:
             file.write(re.sub(r"^    ", "", example[0], flags=re.M))
         done = self.run_script(path, self.address, self.token)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertTrue(os.path.getsize(os.path.join(self.folder.name, "hair.glb")) > 0)
+        self.assertTrue(os.path.getsize(self.path("hair.glb")) > 0)
 
     @unittest.skipUnless(__import__("importlib.util").util.find_spec("matplotlib"), "matplotlib is not here")
     def test_the_plot_is_drawn(self):
         done = self.run_script(os.path.join(TOP, "clients", "python", "plot.py"), "--address", self.address, "--token-file",
                                self.token, "--strands", "200", "--seconds", "0.5", "plot.png")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
-        with open(os.path.join(self.folder.name, "plot.png"), "rb") as file:
+        with open(self.path("plot.png"), "rb") as file:
             self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
-
-
-if __name__ == "__main__":
-    result = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromTestCase(Python))
-    failed = len(result.failures) + len(result.errors)
-    print(f"{result.testsRun - failed - len(result.skipped)} passed, {failed} failed, {len(result.skipped)} skipped")
-    sys.exit(failed > 0)
