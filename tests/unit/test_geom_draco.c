@@ -21,6 +21,7 @@ typedef struct row {
     quantise_bounds bounds;
     draco_mesh mesh;
     draco_writer *writer;
+    draco_reader *reader;
     unsigned char *bytes;
     size_t size;
 } row;
@@ -41,6 +42,7 @@ static row make_row(uint32_t vertices, int bits, symbols_scheme scheme)
     }
     CHECK_INT(draco_mesh_make(vertices, r.indices, r.triangles, NULL, &r.mesh, NULL), AWT_OK);
     CHECK_INT(draco_writer_create(vertices, bits, scheme, DRACO_POSITIONS, &r.writer, NULL), AWT_OK);
+    CHECK_INT(draco_reader_create(vertices, r.triangles, &r.reader, NULL), AWT_OK);
     return r;
 }
 
@@ -48,6 +50,7 @@ static void free_row(row *r)
 {
     draco_mesh_fini(&r->mesh);
     draco_writer_destroy(r->writer);
+    draco_reader_destroy(r->reader);
     free(r->indices);
     free(r->positions);
     free(r->own);
@@ -68,14 +71,10 @@ static void write_row(row *r)
 
 static bool read_row(const row *r, const unsigned char *bytes, size_t size, float *positions)
 {
-    draco_reader *reader = NULL;
-    CHECK_INT(draco_reader_create(r->vertices, r->triangles, &reader, NULL), AWT_OK);
     const draco_kind kind = {.indices = r->indices};
     const draco_source sources[RANS_LANES] = {
         {.bytes = bytes, .size = size, .vertices = r->vertices, .triangles = r->triangles, .positions = positions}};
-    bool read = draco_read(reader, &kind, sources);
-    draco_reader_destroy(reader);
-    return read;
+    return draco_read(r->reader, &kind, sources);
 }
 
 /* Ours through both readers, and the stock encoder's: the same positions to the bit. */

@@ -220,7 +220,7 @@ static void check_cut_and_damaged(geom_kind kind, uint32_t attributes)
         CHECK_INT(geom_read_frame(cut, size, &strands, NULL), AWT_BAD_FORMAT);
         free(cut);
     }
-    for (int round = 0; round < 4000; round++) {
+    for (int round = 0; round < 2000; round++) {
         geom_strands strands = {0};
         memcpy(copy, f.frame.bytes, f.frame.size);
         for (uint32_t flips = 1 + rng_u32(&random) % 4; flips > 0; flips--) {
@@ -233,7 +233,7 @@ static void check_cut_and_damaged(geom_kind kind, uint32_t attributes)
         read += taken;
         geom_strands_fini(&strands);
     }
-    CHECK(read > 0 && read < 4000);
+    CHECK(read > 0 && read < 2000);
     free(copy);
     geom_fixture_fini(&f);
 }

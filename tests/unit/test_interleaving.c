@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SEEDS = 150, DECISIONS = 1500 };
+enum { SEEDS = 80, DECISIONS = 1500 };
 
 TEST(server_keeps_its_promises_however_clients_interleave)
 {

@@ -386,7 +386,7 @@ TEST(changed_snapshots_with_fitting_checksums_break_nothing)
     bytes b = snapshot_of(f), changed = {malloc(b.size), b.size};
     rng r = rng_seed(2);
     int refused = 0, alive = 0;
-    for (int n = 0; n < 500; n++) {
+    for (int n = 0; n < 250; n++) {
         memcpy(changed.data, b.data, b.size);
         for (uint32_t flips = 1 + rng_u32(&r) % 4; flips > 0; flips--) {
             const unsigned char *entry = entry_at(&b, rng_u32(&r) % section_count(&b));
@@ -396,8 +396,8 @@ TEST(changed_snapshots_with_fitting_checksums_break_nothing)
         repair(&changed);
         survives(changed.data, changed.size) ? alive++ : refused++;
     }
-    CHECK(refused > 100 && alive > 50);
-    for (int n = 0; n < 300; n++) { /* the table itself */
+    CHECK(refused > 50 && alive > 25);
+    for (int n = 0; n < 150; n++) { /* the table itself */
         memcpy(changed.data, b.data, b.size);
         size_t at = TABLE_AT - 4 + rng_u32(&r) % (ENTRY_SIZE * (size_t)section_count(&b) + 4);
         changed.data[at] ^= (unsigned char)(1u << rng_u32(&r) % 8);
