@@ -161,13 +161,15 @@ static void viewer_count(caller *c, const struct proto_frame *frame)
     atomic_fetch_add_explicit(&b->stale, frame->flags & STALE, memory_order_relaxed);
 }
 
-/* Gives back the credit of frames that have come, a quarter of the window in one message; where deltas count on what is
- * here, at once. */
+/* Gives back the credit of frames that have come: of a large window half of it in one message; of a small one, which is
+ * as long as the way, and where deltas count on what is here, at once. */
+enum { VIEWER_LARGE_WINDOW = 16 };
+
 static void viewer_give_credit(caller *c, const struct proto_frame *frame)
 {
     const load_plan *p = c->m.run->plan;
     c->spent++;
-    if (!p->deltas && 4 * c->spent < p->credit) {
+    if (!p->deltas && p->credit >= VIEWER_LARGE_WINDOW && 2 * c->spent < p->credit) {
         return;
     }
     proto_message credit = {.type = PROTO_CREDIT};

@@ -86,7 +86,8 @@ wanted() {
 link() {
     fps=$(awk -v share="$2" 'BEGIN { printf "%.1f", share < 1 ? 30 * share : 30 }')
     rate=$(awk -v bytes="$frame_bytes" -v share="$2" 'BEGIN { printf "%d", 30 * bytes * share }')
-    credit=$(awk -v rtt="$1" -v fps="$fps" 'BEGIN { c = rtt * fps / 1000; printf "%d", 1 + c + (c > int(c)) }')
+    # a frame more than are under way until the first one's credit is back: the round trip and its own transfer
+    credit=$(awk -v rtt="$1" -v fps="$fps" -v share="$2" 'BEGIN { c = rtt * fps / 1000 + fps / (30 * share); printf "%d", 1 + c + (c > int(c)) }')
     "$build/awt-relay" --listen 127.0.0.1:0 --connect "$address" --delay $(($1 / 2)) --rate "$rate" >"$work/relay" &
     relay=$!
     sleep 0.5
@@ -156,20 +157,23 @@ if wanted 5; then
     wait "$saturating" 2>/dev/null
 fi
 
-# How many heads of the long style run freely: twice as many each time, until frames stay away (less than 97 % of 60 Hz).
-# Sets `held`, and says what gave way first.
+# How many heads of the long style run freely: more each time, until frames stay away: less than 97 % of 60 a second from
+# those that move and 4 from those at rest (more come while these settle). Sets `held`, and says what gave way first.
 heads() {
     held=0
     for count in 4 8 12 16 24 32 48 64 96 128 192 256; do
         "$build/awt-load" --connect "$address" --token-file "$work/state/token" --quiet --duration 5 --scenario stream --free \
             --strands 10000 --rate 60 --forests $count --connections $count --moving "$1" --motion "$2" >"$work/heads" 2>&1
-        share=$(awk 'index($0, "awtd ") == 1 && $2 > 0 { print $3 / $2 }' "$work/heads")
-        if [ -z "$share" ]; then
+        came=$(awk -v moving="$1" -v count=$count 'index($0, "awtd ") == 1 && $2 > 0 {
+            moves = int(moving * count) + (moving * count > int(moving * count))
+            print $3 / (60 * moves + 4 * (count - moves))
+        }' "$work/heads")
+        if [ -z "$came" ]; then
             tail -n 1 "$work/heads"
             return
         fi
-        echo "$count heads, $1 moving ($2): $(awk -v s="$share" 'BEGIN { printf "%.1f", 100 * s }') % of the frames came, p99 $(figure heads awtd p99) us after what they show; $(sed -n 's/.*frames left out/left out/p' "$work/heads")"
-        awk -v s="$share" 'BEGIN { exit s >= 0.97 }' && return
+        echo "$count heads, $1 moving ($2): $(awk -v s="$came" 'BEGIN { printf "%.1f", 100 * s }') % of the frames came, p99 $(figure heads awtd p99) us after what they show; $(sed -n 's/.*frames left out/left out/p' "$work/heads")"
+        awk -v s="$came" 'BEGIN { exit s >= 0.97 }' && return
         held=$count
     done
 }
