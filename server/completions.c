@@ -7,6 +7,7 @@
 #include "metrics.h"
 #include "published.h"
 #include "session.h"
+#include "turns.h"
 
 #include <string.h>
 
@@ -122,6 +123,7 @@ static void take_restored(service *shared, resident *r)
     if (r->work.drawn) {
         r->ready = true;
         take_picture(shared, r);
+        turns_set_clock(&shared->forests, r, (clock_mode)r->work.saving.mode, r->work.saving.rate);
         log_write(LOG_INFO, "forest restored", "forest=%016llx name=%s time_us=%lld", (unsigned long long)r->handle,
                   quoted, (long long)r->latest->figures.time_us);
         return;

@@ -1,9 +1,9 @@
 /* config.c: see config.h. */
 #include "config.h"
 #include "auth.h"
-#include "config_file.h"
 #include "base/options_layers.h"
 #include "base/version.h"
+#include "text_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 
 /* The options as they were given, before they are checked against each other. */
 typedef struct given {
-    const char *listen, *admin, *state_directory, *token_file, *level, *format, *file;
+    const char *listen, *admin, *state_directory, *token_file, *accounts, *level, *format, *file;
     long long workers, io_threads, max_forests, max_connections;
     long long resume_grace_s, forest_grace_s, quiet_s, save_interval_s, drain_s;
     bool no_auth, no_save, admin_open, check, print;
@@ -70,6 +70,13 @@ static bool take_paths(const given *g, config *out, char *error, size_t error_si
         return false;
     }
     out->saves = !g->no_save && out->state_directory[0] != '\0';
+    if (out->no_auth && g->accounts) {
+        snprintf(error, error_size, "--accounts says who is let in, and --no-auth that everyone is: leave one out");
+        return false;
+    }
+    if (g->accounts && !copy_path("accounts", g->accounts, out->accounts_file, error, error_size)) {
+        return false;
+    }
     if (out->no_auth) {
         return true;
     }
@@ -140,6 +147,8 @@ static option_result take(given *g, const option_program *program, config *out, 
     return OPTIONS_RUN;
 }
 
+static const text_file settings_file = {.what = "settings file", .greatest = LIMIT_CONFIG_FILE};
+
 /* Sets what the settings' file says, then what the environment says, then what the command line says, each over what
  * was said before. The file's text, which settings point into, is the caller's to free. */
 static option_result read_layers(const option_program *program, int count, char *const *arguments, given *g,
@@ -157,7 +166,7 @@ static option_result read_layers(const option_program *program, int count, char 
     const char *named = g->file ? g->file : getenv("AWTD_CONFIG");
     const bool named_one = named && *named;
     *g = defaults;
-    if ((named_one && !(*file = config_file_read(named, error, error_size))) ||
+    if ((named_one && !(*file = text_file_read(&settings_file, named, error, error_size))) ||
         (named_one && !options_take_text(&settings, *file, named, error, error_size)) ||
         !options_take_environment(&settings, "AWTD", getenv, error, error_size)) {
         return OPTIONS_WRONG;
@@ -176,6 +185,8 @@ static option_result read_options(int count, char *const *arguments, given *g, c
         {"state-dir", OPTION_TEXT, "DIR", &g->state_directory, 0, 0,
          "what the daemon keeps; else $AWTD_STATE_DIR, $XDG_STATE_HOME/awtd, ~/.local/state/awtd"},
         {"token-file", OPTION_TEXT, "FILE", &g->token_file, 0, 0, "the token; else DIR/token, made on first start"},
+        {"accounts", OPTION_TEXT, "FILE", &g->accounts, 0, 0,
+         "further tokens, each with a name and bounds: lines NAME TOKEN [forests=N ...]; see awtd(8)"},
         {"no-auth", OPTION_FLAG, NULL, &g->no_auth, 0, 0, "no token is wanted; loopback addresses only"},
         {"max-forests", OPTION_INTEGER, "N", &g->max_forests, 1, LIMIT_FORESTS_GREATEST, "forests that may live"},
         {"max-connections", OPTION_INTEGER, "N", &g->max_connections, 1, LIMIT_CONNECTIONS_GREATEST,

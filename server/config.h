@@ -17,10 +17,11 @@ typedef struct config {
     uint32_t max_forests, max_connections;
     char state_directory[LIMIT_PATH]; /* empty: none; made only if the token file is in it, or forests are kept */
     char token_file[LIMIT_PATH];
-    bool saves;          /* forests are kept in the state directory */
-    int64_t save_us;     /* from one round of it to the next; 0: only at the end */
-    int64_t drain_us;    /* that clients have to leave when the daemon stops */
-    bool own_token_file; /* the token file was named: its directory is not the daemon's to make */
+    char accounts_file[LIMIT_PATH]; /* empty: none */
+    bool saves;                     /* forests are kept in the state directory */
+    int64_t save_us;                /* from one round of it to the next; 0: only at the end */
+    int64_t drain_us;               /* that clients have to leave when the daemon stops */
+    bool own_token_file;            /* the token file was named: its directory is not the daemon's to make */
     bool no_auth;
     int64_t resume_grace_us, forest_grace_us, quiet_us; /* see service.h */
     log_level level;

@@ -179,8 +179,9 @@ connection_fate connection_decide(const connection *c)
 
 bool connection_is_paused(const connection *c)
 {
-    return c->talk.pending >= LIMIT_SESSION_PENDING || c->out.segments >= LIMIT_OUTPUT_SEGMENTS ||
-           c->out.bytes >= LIMIT_OUTPUT_BYTES;
+    const int64_t free_us = session_free_us(&c->talk);
+    return (free_us != INT64_MIN && free_us > connection_now_us(c)) || c->talk.pending >= LIMIT_SESSION_PENDING ||
+           c->out.segments >= LIMIT_OUTPUT_SEGMENTS || c->out.bytes >= LIMIT_OUTPUT_BYTES;
 }
 
 bool connection_is_discarding(const connection *c)
@@ -225,8 +226,12 @@ int64_t connection_due_us(const connection *c)
         return INT64_MAX; /* its loop, or whoever sends, goes on */
     }
     int64_t due_us = session_due_us(&c->talk);
+    const int64_t free_us = session_free_us(&c->talk);
     if (c->out.first) {
         due_us = c->progress_us + LIMIT_WRITE_STALL_US; /* streams wait for it too */
+    }
+    if (free_us < due_us && free_us > connection_now_us(c)) {
+        due_us = free_us; /* to be read on */
     }
     if (c->lingering_us) {
         due_us = c->lingering_us + LIMIT_LINGER_US;

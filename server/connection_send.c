@@ -3,7 +3,7 @@
 #include "net.h"
 
 /* What came of one call to the socket. */
-static void account(connection *c, net_result result, size_t sent)
+static void count_sent(connection *c, net_result result, size_t sent)
 {
     service_counters *counters = &c->talk.shared->counters;
     uint64_t frames = c->out.frames_sent;
@@ -34,7 +34,7 @@ void connection_send(connection *c)
         service_unlock(shared);
         net_result result = net_send(c->fd, pieces, count, &sent);
         service_lock(shared);
-        account(c, result, sent);
+        count_sent(c, result, sent);
         written += sent;
         session_stream(&c->talk);
     }

@@ -1,5 +1,6 @@
 /* daemon.c: see daemon.h. */
 #include "daemon.h"
+#include "accounts_file.h"
 #include "admin.h"
 #include "clock.h"
 #include "completions.h"
@@ -40,11 +41,20 @@ static net_place admin_place(const config *asked)
                                              "--admin-open if others may see what it tells"};
 }
 
+/* None where there is no file of them. */
+static bool read_accounts(const config *asked, account_list *out, char *error, size_t error_size)
+{
+    *out = (account_list){0};
+    return asked->accounts_file[0] == '\0' || accounts_file_read(asked->accounts_file, out, error, error_size);
+}
+
 bool daemon_check(const config *asked, char *error, size_t error_size)
 {
     const net_place place = listen_place(asked), admins = admin_place(asked);
+    account_list accounts;
     return net_check(&place, error, error_size) && (!asked->admin_port[0] || net_check(&admins, error, error_size)) &&
-           (asked->no_auth || token_check(asked->token_file, !asked->own_token_file, error, error_size));
+           (asked->no_auth || token_check(asked->token_file, !asked->own_token_file, error, error_size)) &&
+           read_accounts(asked, &accounts, error, error_size);
 }
 
 static bool open_token(const config *asked, service_options *options, char *error, size_t error_size)
@@ -204,6 +214,7 @@ bool daemon_run(const config *asked, char *error, size_t error_size)
                                .clock_us = clock_monotonic_us};
     char bound[NET_ADDRESS];
     vault where = {0};
+    account_list accounts;
     bool served = false;
     log_set_level(asked->level);
     log_set_format(asked->format);
@@ -211,9 +222,10 @@ bool daemon_run(const config *asked, char *error, size_t error_size)
         snprintf(error, error_size, "/dev/urandom cannot be opened: %s; tokens are made of it", strerror(errno));
         return false;
     }
-    if (!open_token(asked, &options, error, error_size)) {
+    if (!open_token(asked, &options, error, error_size) || !read_accounts(asked, &accounts, error, error_size)) {
         return false;
     }
+    options.accounts = &accounts;
     if (!wake_init(&bell)) {
         snprintf(error, error_size, "no descriptors are left for this process");
         return false;

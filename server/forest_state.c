@@ -78,10 +78,13 @@ awt_status forest_state_restore(forest_work *w, awt_error *error)
     const size_t size = (size_t)r->state->total - r->state_offset;
     awt_status status = awt_snapshot_restore(bytes, size, &w->groom, &w->forest, error);
     if (status == AWT_OK) {
+        awt_groom_get_info(w->groom, &w->info);
+        status = recipe_check_points(r, w->info.strand_count, w->info.points_per_strand, error);
+    }
+    if (status == AWT_OK) {
         r->params = awt_forest_params(w->forest);
         r->start.time_us = awt_forest_time(w->forest);
         r->collider_count = awt_forest_colliders(w->forest, r->colliders);
-        awt_groom_get_info(w->groom, &w->info);
         r->placement.head_radius_m = r->placement.head_radius = w->info.head_radius_m;
     }
     return status;

@@ -70,7 +70,8 @@ static awt_status make_wisps(forest_work *w, awt_error *error)
 static awt_status make_hair(forest_work *w, awt_error *error)
 {
     note_stage(w, FOREST_STRANDS, 0);
-    awt_status status = make_wisps(w, error);
+    awt_status status = recipe_check_files(w->making, error); /* first: a groom is known by the file's hash */
+    status = status == AWT_OK ? make_wisps(w, error) : status;
     note_stage(w, FOREST_DRAWS, 0);
     if (status == AWT_OK) {
         awt_groom_get_info(w->groom, &w->info);

@@ -27,7 +27,7 @@ add(char *key, const char *format, ...)
     ASSERT(size >= 0 && (size_t)size < GROOM_KEY - used);
 }
 
-/* A file is known by the hash that its client proved. */
+/* A file is known by its hash, which was found to be right. */
 static void add_file(char *key, const char *name, const upload *file)
 {
     add(key, " %s=%llu:", name, file ? (unsigned long long)file->total : 0);
@@ -86,6 +86,14 @@ static awt_status build(const recipe *r, const awt_strands *strands, void (*prog
     return status;
 }
 
+/* One that was made for somebody else may be more than this one may have. */
+static awt_status check_made(const recipe *r, const made_groom *made, awt_error *error)
+{
+    awt_groom_info info;
+    awt_groom_get_info(made->groom, &info);
+    return recipe_check_points(r, info.strand_count, info.points_per_strand, error);
+}
+
 const made_groom *groom_make(groom_cache *cache, recipe *r, void (*progress)(void *context, double share),
                              void *context, uint32_t *build_us, awt_error *error)
 {
@@ -95,7 +103,10 @@ const made_groom *groom_make(groom_cache *cache, recipe *r, void (*progress)(voi
     const made_groom *found = groom_cache_find(cache, key);
     awt_strands strands = {0};
     made_groom made = {0};
-    awt_status status = found ? AWT_OK : make_strands(r, &strands, error);
+    awt_status status = found ? check_made(r, found, error) : make_strands(r, &strands, error);
+    if (!found && status == AWT_OK) {
+        status = recipe_check_points(r, strands.strand_count, r->groom.points_per_strand, error);
+    }
     if (!found && status == AWT_OK) {
         const int64_t begun_us = clock_monotonic_us();
         status = build(r, &strands, progress, context, &made.groom, error);
@@ -113,6 +124,9 @@ const made_groom *groom_make(groom_cache *cache, recipe *r, void (*progress)(voi
         status = found ? AWT_OK : error_set(error, AWT_NO_MEMORY, NULL);
     }
     awt_strands_fini(&strands);
+    if (found && status != AWT_OK) {
+        groom_cache_release(cache, found);
+    }
     if (status == AWT_OK) {
         r->placement = found->placement;
     }

@@ -13,6 +13,7 @@ enum {
     LIMIT_FORESTS = 256,
     LIMIT_FORESTS_GREATEST = 65536,
     LIMIT_WORKERS_GREATEST = 256,
+    LIMIT_ACCOUNTS = 64,       /* besides the owner's */
     LIMIT_RESUME_GRACE_S = 60, /* these three: the defaults, seconds, and the greatest value they take */
     LIMIT_FOREST_GRACE_S = 3600,
     LIMIT_QUIET_S = 120,
@@ -27,7 +28,8 @@ enum {
     LIMIT_ADMIN_CONNECTIONS = 16,  /* to the operator's address at once; the oldest makes room */
     LIMIT_ADMIN_REQUEST = 4096,    /* bytes of one request there */
     LIMIT_PATH = 1024,             /* bytes of the state directory's and the token file's path */
-    LIMIT_CONFIG_FILE = 64 * 1024, /* bytes of a file of settings */
+    LIMIT_CONFIG_FILE = 64 * 1024, /* bytes of a file of settings, or of accounts */
+    LIMIT_TOKEN_FILE = 127,        /* bytes */
 
     /* one session */
     LIMIT_SESSION_FORESTS = 256, /* forests open on it */

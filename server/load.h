@@ -9,6 +9,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Of a forest among others. */
+#define IMPORTANCE_LEAST 0.001f
+#define IMPORTANCE_GREATEST 1000.0f
+
 enum { LOAD_THIN_GREATEST = 4, LOAD_COARSER_GREATEST = 2 };
 
 /* What a forest did since the last look. Zeroed: nothing yet. */

@@ -121,6 +121,28 @@ awt_status recipe_restore(upload *state, size_t offset, proto_str name, recipe *
     return AWT_OK;
 }
 
+awt_status recipe_check_files(const recipe *r, awt_error *error)
+{
+    upload *const files[] = {r->file, r->hierarchy, r->state};
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        if (files[i] && !upload_matches(files[i])) {
+            return error_set(error, AWT_BAD_FORMAT, "upload %lu does not match its SHA-256: send it anew",
+                             (unsigned long)files[i]->number);
+        }
+    }
+    return AWT_OK;
+}
+
+awt_status recipe_check_points(const recipe *r, uint64_t strands, uint64_t points_per_strand, awt_error *error)
+{
+    if (strands * points_per_strand <= r->greatest_points) { /* both of 32 bits */
+        return AWT_OK;
+    }
+    return error_set(error, AWT_LIMIT, "the hair has %llu strands of %llu points; this token may have %llu points",
+                     (unsigned long long)strands, (unsigned long long)points_per_strand,
+                     (unsigned long long)r->greatest_points);
+}
+
 void recipe_destroy(recipe *made)
 {
     if (made) {

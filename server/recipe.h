@@ -19,9 +19,10 @@ typedef struct recipe {
     uint32_t strands;
     awt_placement placement; /* of the file; after placing: what was taken */
     awt_groom_def groom;
-    awt_params params;  /* after making: those in force */
-    bool own_stiffness; /* style_omega was named; an upload's is else chosen by its groom */
-    bool tells;         /* PROGRESS is wanted */
+    uint64_t greatest_points; /* of all strands together, as they are drawn */
+    awt_params params;        /* after making: those in force */
+    bool own_stiffness;       /* style_omega was named; an upload's is else chosen by its groom */
+    bool tells;               /* PROGRESS is wanted */
     bool own_colliders;
     uint32_t collider_count; /* after making: those in force */
     awt_collider colliders[AWT_MAX_COLLIDERS];
@@ -34,6 +35,10 @@ awt_status recipe_create(const struct proto_create *message, upload *file, uploa
                          awt_error *error);
 /* A recipe of a snapshot, which begins at `offset` of a complete upload (a reference is taken). Errors likewise. */
 awt_status recipe_restore(upload *state, size_t offset, proto_str name, recipe **out, awt_error *error);
+/* AWT_BAD_FORMAT where a file that came does not match its hash, else AWT_OK. Takes long; without the lock. */
+awt_status recipe_check_files(const recipe *r, awt_error *error);
+/* AWT_LIMIT where so many points are more than it may have, else AWT_OK. */
+awt_status recipe_check_points(const recipe *r, uint64_t strands, uint64_t points_per_strand, awt_error *error);
 /* Under the service's lock. Accepts NULL. */
 void recipe_destroy(recipe *made);
 

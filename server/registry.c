@@ -14,6 +14,7 @@
 bool registry_init(registry *reg, const registry_def *def)
 {
     *reg = (registry){.greatest = def->greatest,
+                      .accounts = def->accounts,
                       .pool = def->pool,
                       .clock_us = def->clock_us,
                       .wish = def->wish,
@@ -31,6 +32,8 @@ static void resident_free(registry *reg, resident *r)
     metrics_add(METRIC_FORESTS, -1);
     metrics_add(METRIC_FORESTS_ASLEEP, -(int64_t)r->asleep);
     metrics_add(METRIC_HAIR_BYTES, -(int64_t)r->bytes);
+    r->account->forests--;
+    r->account->hair_bytes -= r->bytes;
     reg->telling -= r->tells;
     forest_inputs_free(r->waiting);
     forest_inputs_free(r->looks);
@@ -54,8 +57,10 @@ void registry_fini(registry *reg)
 }
 
 /* Puts it at the end of the list. */
-static void link_resident(registry *reg, resident *r)
+static void link_resident(registry *reg, resident *r, account *who)
 {
+    r->account = who;
+    who->forests++;
     r->waiting_end = &r->waiting;
     r->importance = 1;
     r->lowered.thin = 1;
@@ -67,7 +72,7 @@ static void link_resident(registry *reg, resident *r)
 }
 
 /* A resident with a new handle and new tokens. */
-static resident *resident_create(registry *reg)
+static resident *resident_create(registry *reg, account *who)
 {
     resident *r = calloc(1, sizeof *r);
     if (!r) {
@@ -80,7 +85,7 @@ static resident *resident_create(registry *reg)
         free(r);
         return NULL;
     }
-    link_resident(reg, r);
+    link_resident(reg, r, who);
     return r;
 }
 
@@ -98,20 +103,21 @@ static void make(registry *reg, resident *r, recipe *making, int64_t now_us)
     turns_submit(reg, r);
 }
 
-awt_status registry_create(registry *reg, recipe *making, origin from, int64_t now_us, awt_error *error)
+awt_status registry_create(registry *reg, recipe *making, origin from, account *who, int64_t now_us, awt_error *error)
 {
-    awt_status status = AWT_OK;
-    if (reg->alive >= reg->greatest) {
+    awt_status status = account_may_make(who, error) ? AWT_OK : AWT_LIMIT;
+    if (status == AWT_OK && reg->alive >= reg->greatest) {
         status = error_set(error, AWT_LIMIT, "%lu forests live here, and that is the limit: DESTROY one first",
                            (unsigned long)reg->alive);
-    } else if (registry_bytes(reg) >= LIMIT_HAIR_BYTES) {
+    } else if (status == AWT_OK && registry_bytes(reg) >= LIMIT_HAIR_BYTES) {
         status = error_set(error, AWT_LIMIT, "the forests here fill the memory set aside for them: DESTROY one first");
     }
-    resident *r = status == AWT_OK ? resident_create(reg) : NULL;
+    resident *r = status == AWT_OK ? resident_create(reg, who) : NULL;
     if (!r) {
         recipe_destroy(making);
         return status == AWT_OK ? error_set(error, AWT_NO_MEMORY, NULL) : status;
     }
+    making->greatest_points = who->is.caps.points;
     r->creator = from;
     r->tells = making->tells;
     reg->telling += r->tells;
@@ -145,8 +151,13 @@ awt_status registry_restore(registry *reg, const saved *from, upload *file, int6
     r->kept_sequence = from->sequence + 1; /* that of the frame which is drawn of it now: nothing has changed */
     r->restored = true;
     r->left_us = now_us;
+    making->greatest_points = UINT64_MAX; /* it is here already, whatever its account may have today */
+    account *who = accounts_find(reg->accounts, from->account);
     reg->restoring++;
-    link_resident(reg, r);
+    link_resident(reg, r, who ? who : accounts_owner(reg->accounts));
+    r->importance = from->importance;
+    r->work.saving = *from; /* take_restored sets the clock by it */
+    r->work.saving.state = NULL;
     make(reg, r, making, now_us);
     return AWT_OK;
 }
@@ -191,6 +202,7 @@ resident *registry_take_back(job *done)
     ASSERT(r->busy);
     uint64_t bytes = forest_work_bytes(&r->work);
     metrics_add(METRIC_HAIR_BYTES, (int64_t)(bytes - r->bytes));
+    r->account->hair_bytes += bytes - r->bytes;
     metrics_add(METRIC_FORESTS_ASLEEP, (int64_t)r->work.asleep - (int64_t)r->asleep);
     r->bytes = bytes;
     r->state_us = r->work.state_us;

@@ -9,6 +9,7 @@
 #ifndef REGISTRY_H
 #define REGISTRY_H
 
+#include "accounts.h"
 #include "forest_work.h"
 #include "handles.h"
 #include "load.h"
@@ -18,10 +19,6 @@
 struct subscription;
 
 enum { REGISTRY_TOKEN_SIZE = 16 };
-
-/* Of a forest among others, when there is too much to do. */
-#define IMPORTANCE_LEAST 0.001f
-#define IMPORTANCE_GREATEST 1000.0f
 
 /* Bytes of the last frame of a form. */
 typedef struct form_size {
@@ -35,6 +32,7 @@ typedef struct resident {
     uint8_t drive_token[REGISTRY_TOKEN_SIZE], view_token[REGISTRY_TOKEN_SIZE];
     char name[RECIPE_NAME];
     origin creator;         /* whom CREATE is answered to */
+    account *account;       /* whose it is */
     bool ready;             /* made; before, nobody but CREATE's answer may touch it */
     bool busy;              /* a worker has `work` */
     bool running;           /* that is a turn by the daemon's clock */
@@ -42,7 +40,7 @@ typedef struct resident {
     bool tells;             /* is being made for someone who wants PROGRESS */
     uint32_t holders;       /* connections, and parked sessions, that have it open (holdings.h) */
     bool keep_due;          /* its state is to be brought to the disk */
-    bool keep_lost;         /* what was handed to the keeper is not on the disk */
+    bool keep_lost;         /* what was handed to the keeper is not on the disk, or holds no more */
     uint64_t kept_sequence; /* of the state that was handed to the keeper last; 0: none */
     bool restored;          /* it is from the state directory: nobody made it on a connection */
     int64_t left_us;        /* when the last holder left */
@@ -98,6 +96,7 @@ typedef struct registry {
     uint32_t restoring; /* restored residents that are not ready yet */
     groom_cache *grooms;
     keeper *keeper; /* NULL: nothing is brought to the disk */
+    account_book *accounts;
     worker_pool *pool;
     int64_t (*clock_us)(void);
     registry_wish *wish;
@@ -106,6 +105,7 @@ typedef struct registry {
 
 typedef struct registry_def {
     uint32_t greatest;         /* forests */
+    account_book *accounts;    /* must outlive the registry */
     worker_pool *pool;         /* must outlive every call but registry_fini */
     int64_t (*clock_us)(void); /* monotonic */
     registry_wish *wish;
@@ -117,9 +117,10 @@ bool registry_init(registry *reg, const registry_def *def);
 /* Frees every resident. After the pool's threads have ended. Accepts a zeroed one. */
 void registry_fini(registry *reg);
 
-/* Takes `making` and has a worker make the forest of it. The result arrives with the job. AWT_LIMIT (too many
- * forests), AWT_NO_MEMORY (or no random bytes); `making` is freed then. */
-awt_status registry_create(registry *reg, recipe *making, origin from, int64_t now_us, awt_error *error);
+/* Takes `making` and has a worker make the forest of it, for that account. The result arrives with the job. AWT_LIMIT
+ * (too many forests, or as many as the account may have), AWT_NO_MEMORY (or no random bytes); `making` is freed then.
+ */
+awt_status registry_create(registry *reg, recipe *making, origin from, account *who, int64_t now_us, awt_error *error);
 
 /* Makes a forest again from the state directory, by its own handle and tokens; only before anything else is made.
  * `from` is of the upload's bytes. Errors as above, AWT_BAD_VALUE: its handle is taken or cannot be. */

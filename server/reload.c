@@ -1,5 +1,7 @@
 /* reload.c: see reload.h. */
 #include "reload.h"
+#include "accounts_file.h"
+#include "session.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,14 +40,23 @@ static const char *find_fixed(const reload *r, const config *asked)
     return NULL;
 }
 
-static void take_over(reload *r, const config *asked)
+/* All of it, or nothing and false. */
+static bool take_over(reload *r, const config *asked, const account_list *accounts)
 {
+    service_lock(r->shared);
+    const bool taken = accounts_set(&r->shared->accounts, accounts);
+    if (taken) {
+        r->shared->forests.greatest = asked->max_forests;
+        sessions_end_closed(r->shared);
+    }
+    service_unlock(r->shared);
+    if (!taken) {
+        return false;
+    }
     log_set_level(asked->level);
     log_set_format(asked->format);
-    service_lock(r->shared);
-    r->shared->forests.greatest = asked->max_forests;
-    service_unlock(r->shared);
     r->running = *asked;
+    return true;
 }
 
 void reload_settings(void *context)
@@ -53,7 +64,9 @@ void reload_settings(void *context)
     reload *r = context;
     config asked;
     char error[1536 + LIMIT_PATH], quoted[LOG_QUOTED];
-    if (config_read(r->running.argument_count, r->running.arguments, &asked, error, sizeof error) != OPTIONS_RUN) {
+    account_list accounts = {0};
+    if (config_read(r->running.argument_count, r->running.arguments, &asked, error, sizeof error) != OPTIONS_RUN ||
+        (asked.accounts_file[0] && !accounts_file_read(asked.accounts_file, &accounts, error, sizeof error))) {
         log_write(LOG_ERROR, "settings refused", "why=%s", log_quote(error, strlen(error), quoted));
         return;
     }
@@ -63,6 +76,12 @@ void reload_settings(void *context)
                   fixed);
         return;
     }
-    take_over(r, &asked);
-    log_write(LOG_INFO, "settings taken", "max_forests=%lu", (unsigned long)asked.max_forests);
+    if (!take_over(r, &asked, &accounts)) {
+        log_write(LOG_ERROR, "settings refused",
+                  "why=\"more than %d accounts, with those that are struck off and still hold something\"",
+                  LIMIT_ACCOUNTS);
+        return;
+    }
+    log_write(LOG_INFO, "settings taken", "max_forests=%lu accounts=%lu", (unsigned long)asked.max_forests,
+              (unsigned long)accounts.count);
 }

@@ -1,6 +1,7 @@
 /* reload.h: settings read again while the daemon runs: all of what has changed, or nothing.
  *
- * What may change: log-level, log-format, and max-forests up to what it was at the start. Where anything else has
+ * What may change: log-level, log-format, max-forests up to what it was at the start, and the accounts. Clients whose
+ * token was taken back are sent away. Where anything else has
  * changed, or the settings are wrong, everything stays as it was, and the log says why. */
 #ifndef RELOAD_H
 #define RELOAD_H

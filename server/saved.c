@@ -4,10 +4,11 @@
 #include "base/codec.h"
 #include "base/crc32c.h"
 #include "base/error.h"
+#include "load.h"
 
 #include <string.h>
 
-enum { SAVED_VERSION = 1, SAVED_HEADER = 12 };
+enum { SAVED_VERSION = 2, SAVED_HEADER = 12 };
 static const char magic[4] = "AWTF";
 
 /* Everything between the header and the snapshot. */
@@ -17,6 +18,10 @@ static void walk(codec *c, saved *s)
     codec_bytes(c, s->drive_token, sizeof s->drive_token);
     codec_bytes(c, s->view_token, sizeof s->view_token);
     codec_bytes(c, s->name, sizeof s->name);
+    codec_bytes(c, s->account, sizeof s->account);
+    codec_u32(c, &s->mode);
+    codec_f64(c, &s->rate);
+    codec_f32(c, &s->importance);
     codec_u64(c, &s->sequence);
     codec_u64(c, &s->hash);
 }
@@ -52,6 +57,14 @@ void saved_write(const saved *s, void *bytes)
     store_u32(at + 8, crc32c(at + SAVED_HEADER, behind));
 }
 
+static bool is_possible(const saved *s)
+{
+    const bool rated = s->mode != CLOCK_FREE || (s->rate >= CLOCK_RATE_LEAST && s->rate <= CLOCK_RATE_GREATEST);
+    return s->handle != 0 && memchr(s->name, '\0', sizeof s->name) && memchr(s->account, '\0', sizeof s->account) &&
+           s->mode <= CLOCK_PAUSED && rated && s->importance >= IMPORTANCE_LEAST &&
+           s->importance <= IMPORTANCE_GREATEST;
+}
+
 awt_status saved_read(const void *bytes, size_t size, saved *out, awt_error *error)
 {
     const unsigned char *at = bytes;
@@ -67,7 +80,7 @@ awt_status saved_read(const void *bytes, size_t size, saved *out, awt_error *err
     }
     codec reading = codec_reading(at + SAVED_HEADER, size - SAVED_HEADER);
     walk(&reading, out);
-    if (reading.spent || out->handle == 0 || !memchr(out->name, '\0', sizeof out->name)) {
+    if (reading.spent || !is_possible(out)) {
         return error_set(error, AWT_BAD_VALUE, "the saved forest has a field that cannot be");
     }
     out->state = at + SAVED_HEADER + reading.at;

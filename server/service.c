@@ -10,6 +10,11 @@ bool service_init(service *s, const service_options *options)
 {
     *s = (service){.options = *options};
     s->uploads.greatest = LIMIT_UPLOADS_BYTES;
+    accounts_init(&s->accounts, options->token, &s->uploads);
+    if (options->accounts) {
+        accounts_set(&s->accounts, options->accounts);
+        s->options.accounts = NULL;
+    }
     s->started_us = options->clock_us();
     s->load_looked_us = s->started_us;
     s->forests_due_us = options->forest_grace_us > 0 ? s->started_us : INT64_MAX;
@@ -24,6 +29,7 @@ bool service_init(service *s, const service_options *options)
                                                     .wake = options->wake,
                                                     .context = options->wake_context});
     const registry_def forests = {.greatest = options->max_forests,
+                                  .accounts = &s->accounts,
                                   .pool = s->pool,
                                   .clock_us = options->clock_us,
                                   .wish = subscriptions_wish,

@@ -9,7 +9,7 @@
 #ifndef SERVICE_H
 #define SERVICE_H
 
-#include "auth.h"
+#include "accounts.h"
 #include "handles.h"
 #include "parking.h"
 #include "worker.h"
@@ -21,14 +21,15 @@ typedef struct service_options {
     unsigned workers;    /* 0: jobs run where worker_pool_run_one is called */
     uint32_t max_forests, max_sessions;
     bool auth_required;
-    uint8_t token[AUTH_TOKEN_SIZE];
-    int64_t resume_grace_us;     /* that a session which was cut off can be resumed */
-    int64_t forest_grace_us;     /* that a forest lives on when nobody has it open; 0: for ever */
-    int64_t quiet_us;            /* that a client may be silent; 0: for ever */
-    int64_t keep_us;             /* from one round of bringing forests to the disk to the next; 0: none */
-    keeper *keeper;              /* not the service's own; NULL: nothing is brought to the disk */
-    int64_t (*clock_us)(void);   /* clock_monotonic_us, or a test's */
-    void (*wake)(void *context); /* called from workers, without a lock, when a job is done */
+    uint8_t token[AUTH_TOKEN_SIZE]; /* the owner's */
+    const account_list *accounts;   /* besides the owner; NULL: none. Copied */
+    int64_t resume_grace_us;        /* that a session which was cut off can be resumed */
+    int64_t forest_grace_us;        /* that a forest lives on when nobody has it open; 0: for ever */
+    int64_t quiet_us;               /* that a client may be silent; 0: for ever */
+    int64_t keep_us;                /* from one round of bringing forests to the disk to the next; 0: none */
+    keeper *keeper;                 /* not the service's own; NULL: nothing is brought to the disk */
+    int64_t (*clock_us)(void);      /* clock_monotonic_us, or a test's */
+    void (*wake)(void *context);    /* called from workers, without a lock, when a job is done */
     void *wake_context;
 } service_options;
 
@@ -50,6 +51,7 @@ typedef struct service {
     worker_pool *pool;
     registry forests;
     handle_table sessions; /* of struct session */
+    account_book accounts;
     upload_budget uploads;
     parking parked;
     service_counters counters;

@@ -50,10 +50,47 @@ void session_fini(session *s)
     session_end_subscriptions(s);
     promises_free(&s->promised);
     leave_holdings(s);
+    if (s->who) {
+        s->who->connections--;
+    }
     handle_remove(&s->shared->sessions, s->handle);
     s->shared->counters.sessions--;
     metrics_add(METRIC_CONNECTIONS, -1);
     *s = (session){0};
+}
+
+bool session_enter(session *s, uint16_t about, uint64_t request, account *who)
+{
+    if (who->connections >= who->is.caps.connections) {
+        session_error(s, about, request, PROTO_ERROR_LIMIT, "this token has %lu connections, and that is its limit",
+                      (unsigned long)who->connections);
+        s->state = SESSION_CLOSING;
+        return false;
+    }
+    log_write(LOG_DEBUG, "let in", "peer=%s account=%s", s->peer, who->is.name);
+    who->connections++;
+    s->who = who;
+    s->state = SESSION_OPEN;
+    return true;
+}
+
+void sessions_end_closed(service *shared)
+{
+    for (uint32_t i = 0; i < shared->sessions.capacity; i++) {
+        session *s = handle_at(&shared->sessions, i);
+        if (s && s->who && !s->who->open && s->state != SESSION_CLOSING) {
+            session_bye(s, "this token is taken back");
+        }
+    }
+}
+
+bool session_may_drive(session *s, const proto_message *message)
+{
+    if (s->who->is.caps.views_only) {
+        session_error(s, message->type, message->request, PROTO_ERROR_NOT_ALLOWED,
+                      "this token only lets look at forests");
+    }
+    return !s->who->is.caps.views_only;
 }
 
 session *session_find(const service *shared, origin from)
@@ -164,7 +201,7 @@ bool session_make(session *s, const proto_message *message, recipe *making)
                       "the forests here are more than the workers can keep up with");
         return false;
     }
-    if (registry_create(&s->shared->forests, making, from, s->shared->options.clock_us(), &error) != AWT_OK) {
+    if (registry_create(&s->shared->forests, making, from, s->who, s->shared->options.clock_us(), &error) != AWT_OK) {
         session_error_awt(s, message->type, message->request, &error);
         return false;
     }

@@ -38,6 +38,7 @@ typedef struct session {
     session_sink sink;
     uint64_t handle; /* in shared->sessions */
     session_state state;
+    account *who;  /* NULL until it is in */
     char peer[80]; /* for the log */
     uint8_t nonce[AUTH_NONCE_SIZE];
     uint8_t token[PARKING_TOKEN_SIZE]; /* what RESUME names it by */
@@ -77,6 +78,14 @@ void session_send(session *s, const proto_message *message);
 void session_error(session *s, uint16_t about, uint64_t request, int code, const char *format, ...) SESSION_FORMAT;
 /* The same for what the library said. */
 void session_error_awt(session *s, uint16_t about, uint64_t request, const awt_error *error);
+
+/* Lets it in for that account. False: an ERROR about `about` was sent, and the session is closing. */
+bool session_enter(session *s, uint16_t about, uint64_t request, account *who);
+/* Ends those whose accounts are open no more. */
+void sessions_end_closed(service *shared);
+
+/* Whether its account makes and moves things; false: an ERROR was sent. */
+bool session_may_drive(session *s, const proto_message *message);
 
 /* Sends BYE and closes. */
 void session_bye(session *s, const char *reason);
@@ -133,6 +142,8 @@ void session_tick(session *s);
 
 /* A message has come. */
 void session_heard(session *s);
+/* Monotonic time at which its next message may be taken; earlier than now: at once. */
+int64_t session_free_us(const session *s);
 
 /* Monotonic time at which session_tick has something to do; INT64_MAX: never. */
 int64_t session_due_us(const session *s);

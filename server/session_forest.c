@@ -11,6 +11,9 @@ void session_create(session *s, const proto_message *message)
     const struct proto_create *create = &message->as.create;
     awt_error error = {0};
     recipe *making = NULL;
+    if (!session_may_drive(s, message)) {
+        return;
+    }
     const bool from_upload = create->source == RECIPE_FROM_UPLOAD, own_hierarchy = from_upload && create->own_hierarchy;
     upload *file = from_upload ? session_complete_upload(s, create->upload) : NULL;
     upload *hierarchy = own_hierarchy ? session_complete_upload(s, create->hierarchy) : NULL;
@@ -40,9 +43,10 @@ void session_attach_forest(session *s, const proto_message *message)
         return;
     }
     /* both are always compared, so that time does not tell which one was nearer */
-    bool drive = auth_equal(attach->token, r->drive_token, sizeof r->drive_token);
-    bool may_view = auth_equal(attach->token, r->view_token, sizeof r->view_token);
-    if (!drive && !may_view) {
+    const bool may_drive = auth_equal(attach->token, r->drive_token, sizeof r->drive_token);
+    const bool may_view = auth_equal(attach->token, r->view_token, sizeof r->view_token);
+    const bool drive = may_drive && !s->who->is.caps.views_only;
+    if (!may_drive && !may_view) {
         log_write(LOG_WARN, "wrong forest token", "peer=%s", s->peer);
         session_error(s, message->type, message->request, PROTO_ERROR_WRONG_TOKEN, NULL);
         return;

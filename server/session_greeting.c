@@ -16,8 +16,10 @@ static void welcome(session *s, uint64_t request)
     w->server = proto_str_of("awtd " AWTD_VERSION);
     memcpy(w->nonce, s->nonce, sizeof w->nonce);
     memcpy(w->session, s->token, sizeof w->session);
-    s->state = w->auth_required ? SESSION_AUTH : SESSION_OPEN;
-    session_send(s, &reply);
+    s->state = SESSION_AUTH;
+    if (w->auth_required || session_enter(s, PROTO_HELLO, request, accounts_owner(&s->shared->accounts))) {
+        session_send(s, &reply);
+    }
 }
 
 void session_hello(session *s, const proto_message *message)
@@ -42,17 +44,17 @@ void session_hello(session *s, const proto_message *message)
 void session_auth(session *s, const proto_message *message)
 {
     const struct proto_auth *auth = &message->as.auth;
-    uint8_t expected[AUTH_HASH_SIZE];
-    auth_client_proof(s->shared->options.token, s->nonce, auth->nonce, expected);
-    if (!auth_equal(expected, auth->proof, sizeof expected)) {
+    account *who = accounts_prove(&s->shared->accounts, s->nonce, auth);
+    if (!who) {
         log_write(LOG_WARN, "wrong token", "peer=%s", s->peer);
         session_error(s, PROTO_AUTH, message->request, PROTO_ERROR_WRONG_TOKEN, NULL);
         return;
     }
     proto_message reply = {.type = PROTO_AUTH_REPLY, .request = message->request};
-    auth_server_proof(s->shared->options.token, s->nonce, auth->nonce, reply.as.auth_reply.proof);
-    s->state = SESSION_OPEN;
-    session_send(s, &reply);
+    auth_server_proof(who->is.token, s->nonce, auth->nonce, reply.as.auth_reply.proof);
+    if (session_enter(s, PROTO_AUTH, message->request, who)) {
+        session_send(s, &reply);
+    }
 }
 
 void session_ping(session *s, const proto_message *message)

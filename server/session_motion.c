@@ -101,6 +101,7 @@ void session_set_clock(session *s, const proto_message *message)
         return;
     }
     r->importance = set->importance != 0 ? set->importance : r->importance;
+    r->keep_lost = true; /* what is on the disk says otherwise, though no step may come */
     turns_set_clock(&s->shared->forests, r, (clock_mode)set->mode, (double)set->rate);
     proto_message reply = {.type = PROTO_SET_CLOCK_REPLY, .request = message->request};
     reply.as.set_clock_reply.clock_us = s->shared->options.clock_us();

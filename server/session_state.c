@@ -14,6 +14,9 @@ void session_restore(session *s, const proto_message *message)
     const struct proto_restore *restore = &message->as.restore;
     awt_error error = {0};
     recipe *making = NULL;
+    if (!session_may_drive(s, message)) {
+        return;
+    }
     upload *state = session_complete_upload(s, restore->upload);
     if (!state) {
         session_error(s, message->type, message->request, PROTO_ERROR_NO_UPLOAD, "there is no complete upload %lu",

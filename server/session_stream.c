@@ -149,6 +149,14 @@ void session_heard(session *s)
 {
     s->heard_us = s->shared->options.clock_us();
     s->pinged = false;
+    if (s->who) {
+        account_count_message(s->who, s->heard_us);
+    }
+}
+
+int64_t session_free_us(const session *s)
+{
+    return s->who ? account_free_us(s->who) : INT64_MIN;
 }
 
 /* Answers what was promised for now with what there is; the steps go on. */

@@ -46,8 +46,8 @@ static void refuse(session *s, const proto_message *message, upload_result resul
         [UPLOAD_OUT_OF_ORDER] = {PROTO_ERROR_BAD_UPLOAD, "the piece does not follow the last one; begin the upload "
                                                          "anew at offset 0"},
         [UPLOAD_TOO_LONG] = {PROTO_ERROR_BAD_UPLOAD, "the piece goes past the end that the upload announced"},
-        [UPLOAD_WRONG_HASH] = {PROTO_ERROR_BAD_UPLOAD, "the file that came does not match its SHA-256"},
-        [UPLOAD_OVER_BUDGET] = {PROTO_ERROR_BUSY, "all uploads together need more memory than is set aside for them"},
+        [UPLOAD_OVER_BUDGET] = {PROTO_ERROR_BUSY,
+                                "uploads need more memory than is set aside for this token, or for all"},
         [UPLOAD_NO_MEMORY] = {PROTO_ERROR_NO_MEMORY, "not enough memory for the upload"},
     };
     session_error(s, message->type, message->request, refusals[result].code, "%s", refusals[result].text);
@@ -69,7 +69,7 @@ static upload **begin(session *s, const proto_message *message)
                       LIMIT_SESSION_UPLOADS);
         return NULL;
     }
-    *place = upload_create(piece->upload, piece->total, piece->sha256, &s->shared->uploads);
+    *place = upload_create(piece->upload, piece->total, piece->sha256, &s->who->uploads);
     if (!*place) {
         refuse(s, message, UPLOAD_NO_MEMORY);
         return NULL;
@@ -81,6 +81,9 @@ void session_upload(session *s, const proto_message *message)
 {
     const struct proto_upload *piece = &message->as.upload;
     upload **place = upload_place(s, piece->upload);
+    if (!session_may_drive(s, message)) {
+        return;
+    }
     if (piece->total == 0) {
         drop(place);
         reply(s, message, 0);
@@ -107,5 +110,5 @@ void session_upload(session *s, const proto_message *message)
 upload *session_complete_upload(session *s, uint32_t number)
 {
     upload **place = upload_place(s, number);
-    return place && (*place)->complete ? *place : NULL;
+    return place && upload_is_complete(*place) ? *place : NULL;
 }

@@ -6,15 +6,17 @@
 #include "disk.h"
 #include "limits.h"
 #include "random.h"
+#include "text_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { TOKEN_FILE_MODE = 0600, TOKEN_DIRECTORY_MODE = 0700, TOKEN_OTHERS = 077 };
+enum { TOKEN_FILE_MODE = 0600, TOKEN_DIRECTORY_MODE = 0700 };
 
 bool token_make_directory(const char *directory, char *error, size_t error_size)
 {
@@ -93,45 +95,19 @@ static bool make_token(const char *path, char *error, size_t error_size)
     return true;
 }
 
-/* Reads and checks an open token file. */
-static bool read_token(int fd, const char *path, uint8_t token[AUTH_TOKEN_SIZE], char *error, size_t error_size)
-{
-    struct stat about;
-    if (fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) {
-        snprintf(error, error_size, "the token file %s is not a plain file", path);
-        return false;
-    }
-    if (about.st_mode & TOKEN_OTHERS) {
-        snprintf(error, error_size, "the token file %s is open to others than its owner; run: chmod 600 %s", path,
-                 path);
-        return false;
-    }
-    char text[128];
-    ssize_t got = read(fd, text, sizeof text - 1);
-    text[got > 0 ? got : 0] = '\0';
-    if (!auth_token_parse(text, token)) {
-        snprintf(error, error_size,
-                 "the token file %s does not hold 32 hexadecimal digits; remove it and a new one is made", path);
-        return false;
-    }
-    return true;
-}
-
 bool token_open(const char *path, uint8_t token[AUTH_TOKEN_SIZE], char *error, size_t error_size)
 {
-    int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe in its place must not stop the start */
-    if (fd < 0 && errno == ENOENT) {
-        if (!make_token(path, error, error_size)) {
-            return false;
-        }
-        fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    }
-    if (fd < 0) {
-        snprintf(error, error_size, "the token file %s cannot be opened: %s", path, strerror(errno));
+    static const text_file kind = {.what = "token file", .greatest = LIMIT_TOKEN_FILE, .secret = true};
+    if (access(path, F_OK) != 0 && errno == ENOENT && !make_token(path, error, error_size)) {
         return false;
     }
-    bool taken = read_token(fd, path, token, error, error_size);
-    close(fd);
+    char *text = text_file_read(&kind, path, error, error_size);
+    const bool taken = text && auth_token_parse(text, token);
+    if (text && !taken) {
+        snprintf(error, error_size,
+                 "the token file %s does not hold 32 hexadecimal digits; remove it and a new one is made", path);
+    }
+    free(text);
     return taken;
 }
 

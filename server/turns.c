@@ -68,6 +68,10 @@ static void take_keeping(registry *reg, resident *r)
         memcpy(s->drive_token, r->drive_token, sizeof s->drive_token);
         memcpy(s->view_token, r->view_token, sizeof s->view_token);
         memcpy(s->name, r->name, sizeof s->name);
+        memcpy(s->account, r->account->is.name, sizeof s->account);
+        s->mode = r->clock.mode;
+        s->rate = r->clock.rate;
+        s->importance = r->importance;
     }
 }
 

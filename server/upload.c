@@ -17,7 +17,6 @@ upload *upload_create(uint32_t number, uint64_t total, const uint8_t expected[AU
     up->total = total;
     up->budget = budget;
     memcpy(up->expected, expected, AUTH_HASH_SIZE);
-    auth_sha256_init(&up->hash);
     return up;
 }
 
@@ -28,8 +27,11 @@ upload *upload_of(unsigned char *bytes, size_t size)
         free(bytes);
         return NULL;
     }
-    *up =
-        (upload){.references = 1, .total = size, .received = size, .complete = true, .bytes = bytes, .capacity = size};
+    up->references = 1;
+    up->total = up->received = size;
+    up->bytes = bytes;
+    up->capacity = size;
+    atomic_init(&up->matches, true);
     return up;
 }
 
@@ -39,15 +41,38 @@ upload *upload_hold(upload *up)
     return up;
 }
 
+static void give_back(upload_budget *budget, uint64_t bytes)
+{
+    for (; budget; budget = budget->above) {
+        budget->used -= bytes;
+    }
+}
+
 void upload_release(upload *up)
 {
     if (up && --up->references == 0) {
-        if (up->budget) {
-            up->budget->used -= up->capacity;
-        }
+        give_back(up->budget, up->capacity);
         free(up->bytes);
         free(up);
     }
+}
+
+bool upload_is_complete(const upload *up)
+{
+    return up->received == up->total;
+}
+
+bool upload_matches(upload *up)
+{
+    if (!atomic_load_explicit(&up->matches, memory_order_relaxed)) {
+        uint8_t found[AUTH_HASH_SIZE];
+        auth_sha256 hash;
+        auth_sha256_init(&hash);
+        auth_sha256_add(&hash, up->bytes, (size_t)up->total);
+        auth_sha256_done(&hash, found);
+        atomic_store_explicit(&up->matches, auth_equal(found, up->expected, sizeof found), memory_order_relaxed);
+    }
+    return atomic_load_explicit(&up->matches, memory_order_relaxed);
 }
 
 /* Doubles, but never past the announced total, until `needed` bytes fit. */
@@ -62,8 +87,10 @@ static upload_result make_room(upload *up, uint64_t needed)
     }
     capacity = capacity < up->total ? capacity : up->total;
     uint64_t more = capacity - up->capacity;
-    if (more > up->budget->greatest - up->budget->used) {
-        return UPLOAD_OVER_BUDGET;
+    for (const upload_budget *b = up->budget; b; b = b->above) {
+        if (b->used > b->greatest || more > b->greatest - b->used) {
+            return UPLOAD_OVER_BUDGET;
+        }
     }
     unsigned char *larger = capacity <= SIZE_MAX ? realloc(up->bytes, (size_t)capacity) : NULL;
     if (!larger) {
@@ -71,14 +98,16 @@ static upload_result make_room(upload *up, uint64_t needed)
     }
     up->bytes = larger;
     up->capacity = (size_t)capacity;
-    up->budget->used += more;
+    for (upload_budget *b = up->budget; b; b = b->above) {
+        b->used += more;
+    }
     return UPLOAD_TAKEN;
 }
 
 upload_result upload_add(upload *up, uint64_t total, uint64_t offset, const uint8_t expected[AUTH_HASH_SIZE],
                          const unsigned char *piece, size_t size)
 {
-    if (up->complete || total != up->total || offset != up->received ||
+    if (upload_is_complete(up) || total != up->total || offset != up->received ||
         memcmp(expected, up->expected, AUTH_HASH_SIZE) != 0) {
         return UPLOAD_OUT_OF_ORDER;
     }
@@ -91,14 +120,7 @@ upload_result upload_add(upload *up, uint64_t total, uint64_t offset, const uint
     }
     if (size > 0) {
         memcpy(up->bytes + offset, piece, size);
-        auth_sha256_add(&up->hash, piece, size);
         up->received += size;
-    }
-    if (up->received == total) {
-        uint8_t hash[AUTH_HASH_SIZE];
-        auth_sha256_done(&up->hash, hash);
-        up->complete = auth_equal(hash, up->expected, sizeof hash);
-        return up->complete ? UPLOAD_TAKEN : UPLOAD_WRONG_HASH;
     }
     return UPLOAD_TAKEN;
 }

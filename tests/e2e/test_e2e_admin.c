@@ -8,6 +8,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -141,7 +142,7 @@ TEST(e2e_settings_are_read_again_whole_or_not_at_all)
     unsetenv("AWT_TEST_LOG");
     write_settings(path, "max-forests = 4\nlog-level = debug\nlog-format = json\n");
     kill(daemon.pid, SIGHUP);
-    CHECK(log_comes_to(log, "\"msg\":\"settings taken\",\"max_forests\":4}"));
+    CHECK(log_comes_to(log, "\"msg\":\"settings taken\",\"max_forests\":4,\"accounts\":0}"));
     awtclient_close(daemon_client(&daemon));
     CHECK(log_comes_to(log, "\"level\":\"debug\""));
     write_settings(path, "max-forests = 2\nlog-format = text\nmax-connections = 7\n");
@@ -155,6 +156,59 @@ TEST(e2e_settings_are_read_again_whole_or_not_at_all)
     CHECK(log_comes_to(log, "awtd.conf:2: "));
     CHECK_INT(daemon_stop(&daemon), 0);
     CHECK(log_comes_to(log, "\"msg\":\"stopped\"")); /* still JSON: nothing of what was refused holds */
+    folder_remove(folder);
+}
+
+static bool is_answered(awtclient *client)
+{
+    proto_message request = {.type = PROTO_STATS}, answer;
+    return client && awtclient_call(client, &request, &answer, NULL);
+}
+
+/* Whether a client with the token in that file is let in, and answered. */
+static bool is_let_in(const daemon_process *daemon, const char *token_file)
+{
+    const awtclient_options where = {.address = daemon->address, .token_file = token_file};
+    awtclient *client = awtclient_open(&where, NULL);
+    const bool answered = is_answered(client);
+    awtclient_close(client);
+    return answered;
+}
+
+TEST(e2e_accounts_come_and_go_while_awtd_runs)
+{
+    daemon_process daemon;
+    char folder[FOLDER_PATH], path[FOLDER_PATH + 16], log[FOLDER_PATH + 16], one[FOLDER_PATH + 16],
+        two[FOLDER_PATH + 16];
+    folder_make(folder);
+    snprintf(path, sizeof path, "%s/accounts", folder);
+    snprintf(log, sizeof log, "%s/log", folder);
+    snprintf(one, sizeof one, "%s/one", folder);
+    snprintf(two, sizeof two, "%s/two", folder);
+    write_settings(one, "11111111111111111111111111111111\n");
+    write_settings(two, "22222222222222222222222222222222\n");
+    write_settings(path, "one 11111111111111111111111111111111 connections=1\n");
+    CHECK(chmod(path, 0600) == 0);
+    setenv("AWT_TEST_LOG", log, 1);
+    CHECK(daemon_start(&daemon, 1, (const char *const[]){"--accounts", path, NULL}));
+    unsetenv("AWT_TEST_LOG");
+    CHECK(is_let_in(&daemon, one) && is_let_in(&daemon, daemon.token_file) && !is_let_in(&daemon, two));
+    const awtclient_options where = {.address = daemon.address, .token_file = one};
+    awtclient *stays = awtclient_open(&where, NULL);
+    CHECK(stays && !is_let_in(&daemon, one)); /* it has one already */
+
+    write_settings(path, "two 22222222222222222222222222222222\nthree 333\n");
+    kill(daemon.pid, SIGHUP);
+    CHECK(log_comes_to(log, "accounts:2: "));
+    CHECK(is_answered(stays) && !is_let_in(&daemon, two));
+
+    write_settings(path, "two 22222222222222222222222222222222\n");
+    kill(daemon.pid, SIGHUP);
+    CHECK(log_comes_to(log, "accounts=1"));
+    CHECK(is_let_in(&daemon, two) && !is_let_in(&daemon, one) && is_let_in(&daemon, daemon.token_file));
+    CHECK(!is_answered(stays)); /* sent away */
+    awtclient_close(stays);
+    CHECK_INT(daemon_stop(&daemon), 0);
     folder_remove(folder);
 }
 

@@ -22,17 +22,29 @@ static void fake_wake(void *context)
     (void)context;
 }
 
-bool fake_service_init(service *shared, unsigned workers, uint32_t max_forests, bool auth_required)
+static bool init(service *shared, unsigned workers, uint32_t max_forests, bool auth_required,
+                 const account_list *accounts)
 {
     service_options options = {.workers = workers,
                                .max_forests = max_forests,
                                .max_sessions = FAKE_SESSIONS,
                                .auth_required = auth_required,
+                               .accounts = accounts,
                                .clock_us = fake_clock_us,
                                .wake = fake_wake};
     memcpy(options.token, fake_token, sizeof fake_token);
     log_set_level(LOG_ERROR);
     return service_init(shared, &options);
+}
+
+bool fake_service_init(service *shared, unsigned workers, uint32_t max_forests, bool auth_required)
+{
+    return init(shared, workers, max_forests, auth_required, NULL);
+}
+
+bool fake_service_init_with(service *shared, uint32_t max_forests, const account_list *accounts)
+{
+    return init(shared, 0, max_forests, true, accounts);
 }
 
 /* ---- the sink ---------------------------------------------------------------------------------------------------- */
@@ -88,6 +100,19 @@ fake_client *fake_client_open(service *shared)
     CHECK(fake_send(client, &hello));
     fake_expect(client, PROTO_WELCOME);
     CHECK_INT(client->talk.state, SESSION_OPEN);
+    return client;
+}
+
+fake_client *fake_client_with_token(service *shared, const uint8_t token[AUTH_TOKEN_SIZE])
+{
+    fake_client *client = fake_client_create(shared);
+    proto_message hello = fake_hello(), auth = {.type = PROTO_AUTH, .request = 9};
+    fake_send(client, &hello);
+    struct proto_welcome welcome = fake_expect(client, PROTO_WELCOME)->as.welcome;
+    CHECK_INT(welcome.auth_required, 1);
+    memset(auth.as.auth.nonce, 0x5a, sizeof auth.as.auth.nonce);
+    auth_client_proof(token, welcome.nonce, auth.as.auth.nonce, auth.as.auth.proof);
+    fake_send(client, &auth);
     return client;
 }
 

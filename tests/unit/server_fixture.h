@@ -26,11 +26,16 @@ extern const uint8_t fake_token[AUTH_TOKEN_SIZE];
 
 /* A service with that many worker threads (0: fake_work runs the jobs). */
 bool fake_service_init(service *shared, unsigned workers, uint32_t max_forests, bool auth_required);
+/* One that wants a token, with those accounts beside the owner's, and no threads. */
+bool fake_service_init_with(service *shared, uint32_t max_forests, const account_list *accounts);
 
 /* A client whose session has just been accepted; heap, fake_client_destroy. */
 fake_client *fake_client_create(service *shared);
 /* The same, greeted (the service wants no auth). */
 fake_client *fake_client_open(service *shared);
+/* The same, which has answered a service that wants a token with the proof of this one; what comes of it is to be
+ * received. */
+fake_client *fake_client_with_token(service *shared, const uint8_t token[AUTH_TOKEN_SIZE]);
 void fake_client_destroy(fake_client *client);
 
 /* Has the session receive what a connection would give it. False: the header was refused or skipped. */

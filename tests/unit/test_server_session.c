@@ -51,25 +51,11 @@ TEST(server_chooses_a_version_from_the_range)
     service_fini(&shared);
 }
 
-/* Greets a service that wants a token and answers with the proof of `token`. */
-static fake_client *client_with_token(service *shared, const uint8_t token[AUTH_TOKEN_SIZE])
-{
-    fake_client *client = fake_client_create(shared);
-    proto_message hello = fake_hello(), auth = {.type = PROTO_AUTH, .request = 9};
-    fake_send(client, &hello);
-    struct proto_welcome welcome = fake_expect(client, PROTO_WELCOME)->as.welcome;
-    CHECK_INT(welcome.auth_required, 1);
-    memset(auth.as.auth.nonce, 0x5a, sizeof auth.as.auth.nonce);
-    auth_client_proof(token, welcome.nonce, auth.as.auth.nonce, auth.as.auth.proof);
-    fake_send(client, &auth);
-    return client;
-}
-
 TEST(server_lets_the_token_in_and_proves_that_it_holds_it)
 {
     service shared;
     CHECK(fake_service_init(&shared, 0, 4, true));
-    fake_client *client = client_with_token(&shared, fake_token);
+    fake_client *client = fake_client_with_token(&shared, fake_token);
     const proto_message *reply = fake_expect(client, PROTO_AUTH_REPLY);
     uint8_t nonce[AUTH_NONCE_SIZE], expected[AUTH_HASH_SIZE];
     memset(nonce, 0x5a, sizeof nonce);
@@ -88,7 +74,7 @@ TEST(server_refuses_a_wrong_token)
     uint8_t wrong[AUTH_TOKEN_SIZE];
     memcpy(wrong, fake_token, sizeof wrong);
     wrong[15] ^= 1;
-    fake_client *client = client_with_token(&shared, wrong);
+    fake_client *client = fake_client_with_token(&shared, wrong);
     fake_expect_error(client, PROTO_ERROR_WRONG_TOKEN);
     CHECK_INT(client->talk.state, SESSION_CLOSING);
     fake_client_destroy(client);
@@ -117,7 +103,7 @@ TEST(server_nonces_differ)
 {
     service shared;
     CHECK(fake_service_init(&shared, 0, 4, true));
-    fake_client *a = client_with_token(&shared, fake_token), *b = client_with_token(&shared, fake_token);
+    fake_client *a = fake_client_with_token(&shared, fake_token), *b = fake_client_with_token(&shared, fake_token);
     CHECK(memcmp(a->talk.nonce, b->talk.nonce, sizeof a->talk.nonce) != 0);
     fake_client_destroy(a);
     fake_client_destroy(b);

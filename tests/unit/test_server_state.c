@@ -228,6 +228,49 @@ TEST(server_started_anew_has_its_forests_and_they_go_on_to_the_bit)
     folder_remove(state);
 }
 
+TEST(server_started_anew_has_forests_whose_time_goes_as_before_and_whose_they_were)
+{
+    char state[FOLDER_PATH];
+    kept_service k = {0};
+    folder_make(state);
+    begin(&k, state);
+    const account_list accounts = {.count = 1,
+                                   .items = {{.name = "studio", .token = {7}, .caps = account_caps_none()}}};
+    CHECK(accounts_set(&k.shared.accounts, &accounts));
+    fake_client *client = fake_client_open(&k.shared);
+    const uint64_t runs = fake_make_forest(&k.shared, client, 5).forest,
+                   rests = fake_make_forest(&k.shared, client, 6).forest;
+    client->talk.who->forests--; /* the studio's, from now on */
+    registry_find(&k.shared.forests, rests)->account = accounts_find(&k.shared.accounts, "studio");
+    accounts_find(&k.shared.accounts, "studio")->forests++;
+    keep_round(&k);
+    proto_message set = {.type = PROTO_SET_CLOCK, .request = 9};
+    set.as.set_clock = (struct proto_set_clock){.forest = runs, .mode = CLOCK_FREE, .rate = 0.5f, .importance = 4};
+    fake_send(client, &set);
+    fake_expect(client, PROTO_SET_CLOCK_REPLY);
+    set.as.set_clock = (struct proto_set_clock){.forest = rests, .mode = CLOCK_PAUSED};
+    fake_send(client, &set);
+    fake_expect(client, PROTO_SET_CLOCK_REPLY);
+    keep_round(&k); /* though nothing has moved since the last one */
+    fake_client_destroy(client);
+    CHECK(keeper_drain(k.keeper));
+    end(&k);
+
+    begin(&k, state);
+    const resident *again = registry_find(&k.shared.forests, runs), *still = registry_find(&k.shared.forests, rests);
+    CHECK(again && still);
+    CHECK_INT(again->clock.mode, CLOCK_FREE);
+    CHECK_NEAR(again->clock.rate, 0.5, 0);
+    CHECK_NEAR(again->importance, 4, 0);
+    CHECK_INT(still->clock.mode, CLOCK_PAUSED);
+    CHECK_NEAR(still->importance, 1, 0);
+    CHECK_TEXT(again->account->is.name, "owner");
+    CHECK_TEXT(still->account->is.name, "owner"); /* the studio is struck off */
+    CHECK_INT(accounts_owner(&k.shared.accounts)->forests, 2);
+    end(&k);
+    folder_remove(state);
+}
+
 TEST(server_brings_to_the_disk_what_changed_and_removes_what_ended)
 {
     char state[FOLDER_PATH];

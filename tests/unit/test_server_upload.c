@@ -89,9 +89,15 @@ TEST(server_upload_refuses_pieces_that_do_not_fit)
 
     proto_message forged = piece(1, 0, FILE_SIZE);
     forged.as.upload.sha256[31] ^= 1;
-    send_bad(client, forged, PROTO_ERROR_BAD_UPLOAD);
+    send_piece(client, forged, FILE_SIZE);
+    proto_message create = create_from(1);
+    fake_send(client, &create);
+    fake_work(&shared, client);
+    const proto_message *refused = fake_expect(client, PROTO_ERROR);
+    CHECK_INT(refused->as.error.code, PROTO_ERROR_BAD_STRANDS);
+    CHECK(strstr(refused->as.error.text.text, "SHA-256") != NULL);
     CHECK_INT(client->talk.state, SESSION_OPEN);
-    CHECK_U64(shared.uploads.used, 0);
+    CHECK_U64(shared.uploads.used, FILE_SIZE);
     fake_client_destroy(client);
     service_fini(&shared);
 }

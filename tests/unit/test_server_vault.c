@@ -9,6 +9,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -284,6 +285,10 @@ TEST(keeper_refuses_more_than_may_wait)
 static saved example(void)
 {
     saved s = {.handle = 0x300000002, .name = "long", .sequence = 77};
+    snprintf(s.account, sizeof s.account, "studio");
+    s.mode = 1;
+    s.rate = 0.25;
+    s.importance = 8;
     s.hash = 0x1234567890abcdef;
     s.state = "state";
     s.state_size = 5;
@@ -306,11 +311,40 @@ TEST(saved_forest_is_read_as_it_was_written)
     CHECK_TEXT(again.name, s.name);
     CHECK_U64(again.sequence, s.sequence);
     CHECK_U64(again.hash, s.hash);
+    CHECK_TEXT(again.account, "studio");
+    CHECK_INT(again.mode, 1);
+    CHECK_NEAR(again.rate, 0.25, 0);
+    CHECK_NEAR(again.importance, 8, 0);
     CHECK_BYTES(again.drive_token, s.drive_token, sizeof s.drive_token);
     CHECK_BYTES(again.view_token, s.view_token, sizeof s.view_token);
     CHECK_U64(again.state_size, 5);
     CHECK_BYTES(again.state, "state", 5);
     free(bytes);
+}
+
+TEST(saved_forest_with_a_field_that_cannot_be_is_refused)
+{
+    enum { COUNT = 7 };
+    saved bad[COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        bad[i] = example();
+    }
+    bad[0].handle = 0;
+    bad[1].mode = 3;
+    bad[2].rate = 0;
+    bad[3].rate = (double)NAN;
+    bad[4].importance = -1;
+    bad[5].importance = NAN;
+    memset(bad[6].account, 'x', sizeof bad[6].account);
+    for (int i = 0; i < COUNT; i++) {
+        unsigned char *bytes = malloc(saved_size(&bad[i]));
+        saved again;
+        CHECK(bytes != NULL);
+        memcpy(saved_state(&bad[i], bytes), bad[i].state, bad[i].state_size);
+        saved_write(&bad[i], bytes);
+        CHECK_INT(saved_read(bytes, saved_size(&bad[i]), &again, NULL), AWT_BAD_VALUE);
+        free(bytes);
+    }
 }
 
 TEST(saved_forest_that_is_cut_or_damaged_is_refused)
