@@ -200,6 +200,7 @@ resident *registry_take_back(job *done)
     size_t offset = offsetof(resident, work) + offsetof(forest_work, job);
     resident *r = (resident *)(void *)((unsigned char *)done - offset);
     ASSERT(r->busy);
+    r->back = true;
     uint64_t bytes = forest_work_bytes(&r->work);
     metrics_add(METRIC_HAIR_BYTES, (int64_t)(bytes - r->bytes));
     r->account->hair_bytes += bytes - r->bytes;
@@ -219,7 +220,7 @@ resident *registry_take_back(job *done)
 
 void registry_continue(registry *reg, resident *r)
 {
-    r->busy = r->running = false;
+    r->busy = r->running = r->back = false;
     if (r->doomed) {
         resident_end(reg, r);
     } else {

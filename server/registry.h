@@ -36,6 +36,7 @@ typedef struct resident {
     bool ready;             /* made; before, nobody but CREATE's answer may touch it */
     bool busy;              /* a worker has `work` */
     bool running;           /* that is a turn by the daemon's clock */
+    bool back;              /* the worker is done with it, and its results are being taken */
     bool doomed;            /* ended; freed when the worker hands `work` back */
     bool tells;             /* is being made for someone who wants PROGRESS */
     uint32_t holders;       /* connections, and parked sessions, that have it open (holdings.h) */

@@ -170,6 +170,7 @@ void session_picture(session *s, picture *shown, const view *v, uint64_t request
 void session_stale_picture(session *s, picture *shown, const view *v, uint64_t request)
 {
     if (s->state != SESSION_CLOSING) {
+        metrics_count(METRIC_FRAMES_STALE, 1);
         s->sink.picture(s->sink.context, picture_hold(shown), v, &(delivery){.request = request, .stale = true});
     }
 }

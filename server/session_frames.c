@@ -113,7 +113,7 @@ void session_query(session *s, const proto_message *message)
         return;
     }
     const view *v = query->latest ? picture_view(r->latest, (view_name){.form = form}) : NULL;
-    const bool stale = v && !is_fresh(s, r) && r->busy && s->shared->options.clock_us() > r->work.job.deadline_us;
+    const bool stale = v && !is_fresh(s, r) && turns_is_late(r, s->shared->options.clock_us());
     if (stale) {
         session_stale_picture(s, r->latest, v, message->request);
         return;

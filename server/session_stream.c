@@ -1,6 +1,7 @@
 /* session_stream.c: what a session sends without being asked at that moment: frames of its subscriptions, PING to a
  * client that is silent, and what was promised by a deadline. */
 #include "session.h"
+#include "metrics.h"
 #include "turns.h"
 
 #include <stdlib.h>
@@ -85,7 +86,8 @@ static void stream(session *s, int64_t now_us)
         if (!sub) {
             return;
         }
-        delivery to = {.request = sub->request};
+        delivery to = {.request = sub->request, .stale = turns_is_late(sub->forest, now_us)};
+        metrics_count(METRIC_FRAMES_STALE, to.stale);
         picture *shown = subscription_take(sub, v, now_us, &to.skipped);
         s->sink.picture(s->sink.context, shown, v, &to);
     }

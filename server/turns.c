@@ -221,6 +221,11 @@ bool turns_push(registry *reg, resident *r, forest_input *input)
     return pushed;
 }
 
+bool turns_is_late(const resident *r, int64_t now_us)
+{
+    return r->busy && !r->back && now_us > r->work.job.deadline_us;
+}
+
 void turns_attend(registry *reg, resident *r)
 {
     turns_recall(reg, r);

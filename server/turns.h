@@ -31,6 +31,9 @@ void turns_keep(registry *reg, resident *r);
 /* Who looks at the forest has changed: a free-running one may have its next turn at another time. */
 void turns_attend(registry *reg, resident *r);
 
+/* Whether its step should have been done by now: what there is to be seen of it is stale. */
+bool turns_is_late(const resident *r, int64_t now_us);
+
 /* From now on its time goes so. A clock that starts takes over where the forest is, or will be when its queries are
  * answered. */
 void turns_set_clock(registry *reg, resident *r, clock_mode mode, double rate);

@@ -105,6 +105,29 @@ TEST(server_stream_waits_for_a_slow_receiver_without_slowing_the_driver)
     scene_fini(&s);
 }
 
+TEST(server_stream_says_that_a_frame_is_stale_while_the_next_step_is_late)
+{
+    scene s;
+    scene_init(&s);
+    const uint64_t handle = subscribe(s.viewer, s.forest, 1, 0);
+    advance(&s.shared, s.driver, s.forest, &s.time_us, 2); /* the second one waits for credit */
+    CHECK_INT(fake_expect(s.viewer, PROTO_FRAME)->as.frame.flags, 0);
+    const proto_message query = fake_query(s.forest, s.time_us += 10000);
+    CHECK(fake_send(s.driver, &query));
+    fake_now_us += LIMIT_STEP_US;
+    credit(s.viewer, handle, 1); /* the step is due just now */
+    CHECK_INT(fake_expect(s.viewer, PROTO_FRAME)->as.frame.flags, 0);
+    fake_work(&s.shared, s.driver);
+    const proto_message after = fake_query(s.forest, s.time_us += 10000);
+    CHECK(fake_send(s.driver, &after));
+    fake_now_us += LIMIT_STEP_US + 1;
+    credit(s.viewer, handle, 2);
+    CHECK_INT(fake_expect(s.viewer, PROTO_FRAME)->as.frame.flags, 1);
+    fake_work(&s.shared, s.driver); /* late as it comes, its frame is the newest there is */
+    CHECK_INT(fake_expect(s.viewer, PROTO_FRAME)->as.frame.flags, 0);
+    scene_fini(&s);
+}
+
 TEST(server_stream_keeps_to_the_rate_asked_for)
 {
     scene s;
