@@ -39,7 +39,7 @@ SRC_clients := $(filter-out clients/awtctl% clients/engine_% clients/load/% clie
 SRC_awtctl := $(wildcard clients/awtctl*.c)
 SRC_load := $(wildcard clients/load/*.c)
 SRC_loop := $(wildcard clients/engine_*.c)
-SRC_unit := tests/main.c $(wildcard tests/unit/*.c tests/e2e/*.c)
+SRC_unit := tests/main.c $(wildcard tests/unit/*.c tests/unit/*.cc tests/e2e/*.c)
 SRC_bench := $(wildcard tests/bench/*.c)
 SRC_relay := $(wildcard tests/relay/*.c)
 # What tests look into of programs that are no library.
@@ -86,7 +86,7 @@ $(B)/engine_loop: $(call objects,$(SRC_loop)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-load: $(call objects,$(SRC_load)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/tests: $(call objects,$(SRC_unit) $(SRC_lent)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
-# The tests count what the heap is asked for (tests/unit/test_allocation.c): the linker leads these calls there.
+# The tests see what the heap is asked for, and can refuse it: the linker leads these calls to tests/unit/heap_seam.c.
 $(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_alloc posix_memalign free)
 # A bad line for the tests to put between client and daemon.
 $(B)/awt-relay: $(call objects,$(SRC_relay)) $(LIBAWT)

@@ -76,17 +76,24 @@ static void reply_created(session *s, const resident *r)
     session_send(s, &reply);
 }
 
+/* Why a forest that was to be made cannot be shown. */
+static const awt_error *fault_of(const forest_work *w)
+{
+    return w->error.status != AWT_OK ? &w->error : &w->draw_error;
+}
+
 /* A forest that nobody will ever hear of is not kept. False: it is doomed. */
 static bool accept_created(service *shared, resident *r, session *asker)
 {
     char quoted[LOG_QUOTED];
     log_quote(r->name, strlen(r->name), quoted);
     if (!r->work.drawn) {
+        const awt_error *fault = fault_of(&r->work);
         char why[LOG_QUOTED];
         log_write(LOG_INFO, "forest not made", "name=%s why=%s", quoted,
-                  log_quote(r->work.error.text, strlen(r->work.error.text), why));
+                  log_quote(fault->text, strlen(fault->text), why));
         if (asker) {
-            session_error_awt(asker, PROTO_CREATE, r->creator.request, &r->work.error);
+            session_error_awt(asker, PROTO_CREATE, r->creator.request, fault);
         }
     } else if (!asker || asker->state == SESSION_CLOSING) {
         log_write(LOG_INFO, "forest not kept", "name=%s why=\"its maker is gone\"", quoted);
@@ -128,8 +135,9 @@ static void take_restored(service *shared, resident *r)
                   quoted, (long long)r->latest->figures.time_us);
         return;
     }
+    const awt_error *fault = fault_of(&r->work);
     log_write(LOG_ERROR, "forest not restored", "forest=%016llx name=%s why=%s", (unsigned long long)r->handle, quoted,
-              log_quote(r->work.error.text, strlen(r->work.error.text), why));
+              log_quote(fault->text, strlen(fault->text), why));
     keeper_set_aside(shared->forests.keeper, r->handle);
     forest_inputs_free(registry_destroy(&shared->forests, r));
 }

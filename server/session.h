@@ -122,7 +122,7 @@ bool session_push(session *s, const proto_message *message, resident *r, forest_
 
 /* ---- subscriptions ---------------------------------------------------------------------------------------------- */
 
-/* A free place for one. NULL: LIMIT_SESSION_SUBSCRIPTIONS are taken, or no memory. */
+/* A free place for one. NULL: LIMIT_SESSION_SUBSCRIPTIONS are taken; or no memory, and s->subscriptions is NULL too. */
 subscription *session_subscription_place(session *s);
 void session_end_subscriptions(session *s);
 /* Those on one forest. */

@@ -154,6 +154,10 @@ void session_subscribe(session *s, const proto_message *message)
         return;
     }
     subscription *place = session_subscription_place(s);
+    if (!s->subscriptions) {
+        session_error(s, message->type, message->request, PROTO_ERROR_NO_MEMORY, NULL);
+        return;
+    }
     if (!place) {
         session_error(s, message->type, message->request, PROTO_ERROR_LIMIT,
                       "a connection has %d subscriptions at most", LIMIT_SESSION_SUBSCRIPTIONS);

@@ -18,10 +18,11 @@ typedef struct shown_level {
 
 /* An instant between two sub-steps. */
 typedef struct shown_between {
-    float *centres, *frames; /* of the first, as in shown_hair; NULL: nothing was ever held */
+    float *centres, *frames; /* of the first, as in shown_hair */
     float *mixed_centres, *mixed_frames;
     awt_pose head;
     int64_t time_us;
+    bool holds;       /* something was held */
     uint64_t held_at; /* sub-steps that the forest had made then */
     double share;     /* of the way to the second; 1: the forest is shown as it stands */
     uint64_t mixed_at;
@@ -112,16 +113,18 @@ uint64_t shown_hair_bytes(const shown_hair *h)
 
 /* ---- between two sub-steps --------------------------------------------------------------------------------------- */
 
+/* For so many numbers of every node; those that are there stay. False: no memory. */
+static bool take_numbers(shown_hair *h, float **at, size_t components)
+{
+    *at = *at ? *at : take_memory(h, h->info.finest_nodes, components * sizeof **at);
+    return *at != NULL;
+}
+
 static bool take_between(shown_hair *h)
 {
     shown_between *b = &h->between;
-    if (!b->centres) {
-        b->centres = take_memory(h, h->info.finest_nodes, 3 * sizeof(float));
-        b->frames = take_memory(h, h->info.finest_nodes, 4 * sizeof(float));
-        b->mixed_centres = take_memory(h, h->info.finest_nodes, 3 * sizeof(float));
-        b->mixed_frames = take_memory(h, h->info.finest_nodes, 4 * sizeof(float));
-    }
-    return b->centres && b->frames && b->mixed_centres && b->mixed_frames;
+    return take_numbers(h, &b->centres, 3) && take_numbers(h, &b->frames, 4) && take_numbers(h, &b->mixed_centres, 3) &&
+           take_numbers(h, &b->mixed_frames, 4);
 }
 
 /* Which top-level wisps moved since then; NULL: none did. */
@@ -152,6 +155,7 @@ void shown_hair_hold(shown_hair *h, const awt_forest *forest)
     take_guides(h, forest);
     memcpy(b->centres, h->centres, (size_t)h->info.finest_nodes * 3 * sizeof(float));
     memcpy(b->frames, h->frames, (size_t)h->info.finest_nodes * 4 * sizeof(float));
+    b->holds = true;
     b->head = awt_forest_head(forest);
     b->time_us = awt_forest_time(forest);
     b->held_at = awt_forest_sub_steps(forest);
@@ -162,7 +166,7 @@ int64_t shown_hair_show(shown_hair *h, const awt_forest *forest, int64_t time_us
     shown_between *b = &h->between;
     const int64_t now_us = awt_forest_time(forest);
     const bool is_between =
-        b->mixed_frames && b->held_at + 1 == awt_forest_sub_steps(forest) && time_us >= b->time_us && time_us < now_us;
+        b->holds && b->held_at + 1 == awt_forest_sub_steps(forest) && time_us >= b->time_us && time_us < now_us;
     b->share = is_between ? (double)(time_us - b->time_us) / (double)(now_us - b->time_us) : 1;
     return is_between ? time_us : now_us;
 }

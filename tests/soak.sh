@@ -1,9 +1,9 @@
 #!/bin/sh
 # soak.sh: what takes longer than make test may, with the time that each part took: ten simulated minutes of every style under
 # the most violent motion there is, what has threads under TSan, the same bits from both compilers at every optimisation and on
-# another architecture, kills at any moment, and fuzzing of all that reads bytes from outside. Its last line counts all.
+# another architecture, kills at any moment, no memory anywhere, and fuzzing of all that reads bytes from outside. Its last line counts all.
 #
-# PARTS: these alone, of violence bits around fuzz clang kills tsan.
+# PARTS: these alone, of violence bits around fuzz clang kills memory tsan.
 # AWT_DATA: where motion files are (else ../shared/data); SECONDS_SIMULATED, FUZZ_SECONDS (of each target): for a shorter run.
 set -u
 cd "$(dirname "$0")/.."
@@ -188,6 +188,12 @@ part_kills() {
     took "kills and interleavings"
 }
 
+part_memory() {
+    build config=asan CC=clang CXX=clang++
+    AWT_ALLOCATIONS=1 suite "every allocation of the daemon failed once, ASan and UBSan" build/asan/tests without_memory
+    took "out of memory"
+}
+
 part_tsan() {
     build config=tsan
     suite "every test with more than one thread, TSan" build/tsan/tests server client_ e2e bench_ gusts_ worker
@@ -196,7 +202,7 @@ part_tsan() {
 
 build config=release
 took building
-for part in ${PARTS:-violence bits around fuzz clang kills tsan}; do
+for part in ${PARTS:-violence bits around fuzz clang kills memory tsan}; do
     part_$part
 done
 finish

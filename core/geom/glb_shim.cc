@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "geom/buffer.h"
 #include "geom/draco_extra.h"
+#include "geom/new_reserve.h"
 
 #include <tiny_gltf.h>
 
@@ -18,6 +19,14 @@ namespace
 {
 
 const char *const DRACO_EXTENSION = "KHR_draco_mesh_compression";
+
+/* More than twice what tinygltf takes for a frame, as measured. */
+const size_t RESERVE_BYTES = 256 << 10, RESERVE_PATCH_BYTES = 32 << 10, RESERVE_WIDTH_BYTES = 512;
+
+size_t reserve_bytes(const glb_frame &frame)
+{
+    return RESERVE_BYTES + frame.patch_count * RESERVE_PATCH_BYTES + frame.points_per_strand * RESERVE_WIDTH_BYTES;
+}
 
 /* tinygltf writes to a stream; this one ends in our buffer. */
 class BufferSink : public std::streambuf
@@ -205,6 +214,10 @@ void fill_model(tinygltf::Model *model, const glb_frame &frame)
 
 awt_status glb_shim_write(const glb_frame *frame, geom_buffer *out, awt_error *error)
 {
+    NewReserve reserve(reserve_bytes(*frame));
+    if (!reserve.is_there()) {
+        return error_set(error, AWT_NO_MEMORY, nullptr);
+    }
     try {
         tinygltf::Model model;
         fill_model(&model, *frame);

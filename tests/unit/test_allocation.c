@@ -1,6 +1,4 @@
-/* test_allocation.c: stepping and encoding take no memory and give none back. The build has the linker pass every call
- * of the heap that the library makes through here (Makefile: WRAP), whatever heap is behind it, the sanitizers' own
- * included. */
+/* test_allocation.c: stepping and encoding take no memory and give none back. */
 #include "check.h"
 #include "invariant_fixture.h"
 
@@ -9,48 +7,9 @@
 #include "unit/delta_fixture.h"
 #include "unit/fixture.h"
 #include "unit/guides_fixture.h"
+#include "unit/heap_seam.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-
-/* Calls by the present thread since count_begin; the tests' own threads go uncounted. */
-static _Thread_local bool counting;
-static _Thread_local unsigned calls;
-
-#define WRAPPED(type, name, parameters, arguments) \
-    type __real_##name parameters;                 \
-    type __wrap_##name parameters;                 \
-    type __wrap_##name parameters                  \
-    {                                              \
-        calls += counting;                         \
-        return __real_##name arguments;            \
-    }
-
-WRAPPED(void *, malloc, (size_t size), (size))
-WRAPPED(void *, calloc, (size_t count, size_t size), (count, size))
-WRAPPED(void *, realloc, (void *block, size_t size), (block, size))
-WRAPPED(void *, aligned_alloc, (size_t alignment, size_t size), (alignment, size))
-WRAPPED(int, posix_memalign, (void **block, size_t alignment, size_t size), (block, alignment, size))
-
-void __real_free(void *block);
-void __wrap_free(void *block);
-void __wrap_free(void *block)
-{
-    calls += counting;
-    __real_free(block);
-}
-
-static void count_begin(void)
-{
-    calls = 0;
-    counting = true;
-}
-
-static unsigned count_end(void)
-{
-    counting = false;
-    return calls;
-}
 
 /* Were the count always 0, the other test would say nothing. */
 TEST(the_heap_is_counted_where_it_is_used)
@@ -60,13 +19,13 @@ TEST(the_heap_is_counted_where_it_is_used)
     awt_forest_def def = awt_forest_def_default(groom);
     def.params = params;
     awt_forest *f = NULL;
-    count_begin();
+    heap_watch();
     awt_status status = awt_forest_create(groom, &def, &f, NULL);
-    CHECK(count_end() >= 2);
+    CHECK(heap_watch_end().calls >= 2);
     CHECK_INT(status, AWT_OK);
-    count_begin();
+    heap_watch();
     awt_forest_destroy(f);
-    CHECK(count_end() >= 2);
+    CHECK(heap_watch_end().calls >= 2);
     awt_groom_destroy(groom);
 }
 
@@ -87,7 +46,7 @@ static void check_stepping(const char *style)
     awt_step_stats stats, sums = {0};
     awt_error error;
     awt_motion m;
-    count_begin();
+    heap_watch();
     for (int n = 1; n <= 60; n++) {
         m = wild_at(&w, (int64_t)n * 2 * AWT_STEP_US);
         m.teleport = n == 20;
@@ -107,7 +66,7 @@ static void check_stepping(const char *style)
         sums.asleep_trees += stats.asleep_trees;
     }
     awt_forest_advance(f, 0, &stats, &error); /* refused */
-    unsigned counted = count_end();
+    unsigned counted = heap_watch_end().calls;
     CHECK_INT(counted, 0);
     CHECK(sums.splits > 50);
     CHECK(sums.merges > 50);
@@ -137,13 +96,13 @@ TEST(encoding_deltas_allocates_nothing)
     delta_fixture_move(&f, 0.1f, NULL);
     delta_fixture_encode(&f, NULL);
     for (int round = 0; round < 2; round++) {
-        count_begin();
+        heap_watch();
         whole.quantised = delta.now = f.now;
         delta.base = f.base;
         geom_quantise(f.hair.layout, &quantise, f.now, &clamped, NULL);
         geom_encode(f.hair.layout, f.hair.scratch, &whole, &f.whole, NULL, NULL);
         awt_status status = geom_encode_delta(f.hair.layout, f.hair.scratch, &delta, &f.delta, NULL, NULL);
-        unsigned counted = count_end();
+        unsigned counted = heap_watch_end().calls;
         CHECK(round == 0 ? counted > 0 : counted == 0); /* f.whole has grown */
         CHECK_INT(status, AWT_OK);
     }
@@ -178,10 +137,10 @@ TEST(drawing_allocates_nothing_in_the_steady_state)
         }
         wishes_add(&wanted, (view_name){.form = 3, .base = n > 3 ? n - 3 : 0});
         wishes_add(&wanted, (view_name){.form = form_find(GEOM_GUIDES, 0, FORM_DELTAS), .base = n > 3 ? n - 3 : 0});
-        count_begin();
+        heap_watch();
         const bool renewed = picture_renew(*at);
         const awt_status status = drawing_draw(d, f, n, &wanted, *at, &error);
-        const unsigned calls_now = count_end();
+        const unsigned calls_now = heap_watch_end().calls;
         counted += n > WARM ? calls_now : 0;
         CHECK(n > 1 || calls_now > 0);
         CHECK(renewed);
@@ -214,7 +173,7 @@ TEST(encoding_deltas_of_guides_allocates_nothing)
     geom_buffer out = {0};
     uint32_t clamped = 0;
     for (int round = 0; round < 2; round++) {
-        count_begin();
+        heap_watch();
         def.base = NULL;
         def.base_sequence = 0;
         awt_status quantised = geom_quantise(f.layout, &quantise, f.now, &clamped, NULL);
@@ -222,7 +181,7 @@ TEST(encoding_deltas_of_guides_allocates_nothing)
         def.base = f.base;
         def.base_sequence = 1;
         awt_status delta = geom_encode_delta(f.layout, f.encoder, &def, &out, NULL, NULL);
-        unsigned counted = count_end();
+        unsigned counted = heap_watch_end().calls;
         CHECK(round == 0 ? counted > 0 : counted == 0); /* `out` has grown */
         CHECK(quantised == AWT_OK && whole == AWT_OK && delta == AWT_OK);
     }
