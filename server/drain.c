@@ -56,19 +56,35 @@ static bool all_kept(service *shared)
     return kept;
 }
 
-bool drain_forests(service *shared)
+/* One round of bringing all to the disk. How many the keeper did not get: there is more room when it has written. */
+static uint32_t keep_once(service *shared, bool *clean)
 {
-    keeper *k = shared->options.keeper;
-    if (!k) {
-        return true;
-    }
     service_lock(shared);
     upkeep_keep_all(shared);
     service_unlock(shared);
     while (!all_kept(shared)) {
         wait_a_little();
     }
-    const bool clean = keeper_drain(k);
+    *clean = keeper_drain(shared->options.keeper);
+    service_lock(shared);
+    const uint32_t left = upkeep_unkept(shared);
+    service_unlock(shared);
+    return left;
+}
+
+bool drain_forests(service *shared)
+{
+    keeper *k = shared->options.keeper;
+    if (!k) {
+        return true;
+    }
+    bool clean = true;
+    uint32_t before = UINT32_MAX, left = keep_once(shared, &clean);
+    while (left > 0 && left < before) { /* as long as it becomes fewer */
+        before = left;
+        left = keep_once(shared, &clean);
+    }
+    clean = clean && left == 0;
     const keeper_counts counts = keeper_count(k);
     log_write(clean ? LOG_INFO : LOG_ERROR, clean ? "forests saved" : "forests not all saved",
               "written=%llu failed=%llu", (unsigned long long)counts.written, (unsigned long long)counts.failed);

@@ -128,12 +128,13 @@ awt_status registry_create(registry *reg, recipe *making, origin from, account *
 awt_status registry_restore(registry *reg, const saved *from, upload *file, int64_t now_us, awt_error *error)
 {
     recipe *making = NULL;
-    resident *r = reg->alive < reg->greatest ? calloc(1, sizeof *r) : NULL;
     const size_t offset = (size_t)file->total - from->state_size;
-    awt_status status = r ? recipe_restore(file, offset, proto_str_of(from->name), &making, error) : AWT_LIMIT;
-    if (!r) {
+    if (reg->alive >= reg->greatest) {
         return error_set(error, AWT_LIMIT, "there is no room for more than %lu forests", (unsigned long)reg->alive);
     }
+    resident *r = calloc(1, sizeof *r);
+    awt_status status = r ? recipe_restore(file, offset, proto_str_of(from->name), &making, error)
+                          : error_set(error, AWT_NO_MEMORY, NULL);
     if (status == AWT_OK && !handle_put(&reg->handles, from->handle, r)) {
         status =
             error_set(error, AWT_BAD_VALUE, "its handle cannot be, or is taken; is --max-forests less than it was?");
@@ -212,6 +213,7 @@ resident *registry_take_back(job *done)
     }
     r->asleep = r->work.asleep;
     r->kept_sequence = r->work.kept ? r->work.sequence : r->kept_sequence;
+    r->keep_lost = r->keep_lost || (r->work.keeper && !r->work.kept);
     for (int i = 0; i < FORM_COUNT && r->work.draws; i++) {
         r->form_bytes[i] = drawing_form_bytes(r->work.draws, i);
     }

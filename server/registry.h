@@ -41,7 +41,7 @@ typedef struct resident {
     bool tells;             /* is being made for someone who wants PROGRESS */
     uint32_t holders;       /* connections, and parked sessions, that have it open (holdings.h) */
     bool keep_due;          /* its state is to be brought to the disk */
-    bool keep_lost;         /* what was handed to the keeper is not on the disk, or holds no more */
+    bool keep_lost;         /* the keeper did not get it, or it is not on the disk, or holds no more */
     uint64_t kept_sequence; /* of the state that was handed to the keeper last; 0: none */
     bool restored;          /* it is from the state directory: nobody made it on a connection */
     int64_t left_us;        /* when the last holder left */

@@ -74,6 +74,15 @@ bool upkeep_kept_all(const service *shared)
     return true;
 }
 
+uint32_t upkeep_unkept(const service *shared)
+{
+    uint32_t count = 0;
+    for (const resident *r = shared->forests.first; r; r = r->next) {
+        count += r->ready && !r->doomed && r->keep_lost;
+    }
+    return count;
+}
+
 static void keep_round(service *shared, int64_t now_us)
 {
     if (now_us >= shared->keep_due_us) {

@@ -14,7 +14,10 @@ void upkeep_do(service *shared, int64_t now_us);
 /* Has every forest that changed brought to the disk, now, and those that could not be when it was tried last; nothing
  * without a keeper. */
 void upkeep_keep_all(service *shared);
-/* True if every change that upkeep_keep_all was asked for has been handed to the keeper. */
+/* True if every change that upkeep_keep_all was asked for has been offered to the keeper. */
 bool upkeep_kept_all(const service *shared);
+/* How many are not kept as they are: the keeper did not get them, for want of memory or because too much waits for the
+ * disk. upkeep_keep_all tries again. */
+uint32_t upkeep_unkept(const service *shared);
 
 #endif

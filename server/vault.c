@@ -131,6 +131,7 @@ static unsigned char *read_all(int fd, size_t size)
 {
     unsigned char *bytes = malloc(size > 0 ? size : 1);
     size_t done = 0;
+    errno = bytes ? errno : ENOMEM; /* the compiler takes malloc to leave it alone */
     while (bytes && done < size) {
         ssize_t got = read(fd, bytes + done, size - done);
         if (got == 0 || (got < 0 && errno != EINTR)) {
