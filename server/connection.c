@@ -26,6 +26,7 @@ static void before_output(connection *c)
     }
 }
 
+/* An answer that nobody takes is one that is not waited for any more: then too there may be something to do. */
 static void after_output(connection *c, bool added)
 {
     if (!added) {
@@ -38,9 +39,7 @@ static void sink_message(void *context, const proto_message *message)
 {
     connection *c = context;
     before_output(c);
-    if (!c->output_failed) {
-        after_output(c, output_add_message(&c->out, message));
-    }
+    after_output(c, c->output_failed || output_add_message(&c->out, message));
 }
 
 static void sink_picture(void *context, picture *shown, const view *v, const delivery *to)
@@ -49,9 +48,8 @@ static void sink_picture(void *context, picture *shown, const view *v, const del
     before_output(c);
     if (c->output_failed) {
         picture_release(shown);
-    } else {
-        after_output(c, output_add_picture(&c->out, shown, v, to));
     }
+    after_output(c, c->output_failed || output_add_picture(&c->out, shown, v, to));
 }
 
 static bool sink_drained(void *context)

@@ -254,13 +254,15 @@ static void say_bye(loop *l)
     service_unlock(l->shared);
 }
 
+/* Those to whom somebody sends just now have a turn when that is over. */
 static void drop_all(loop *l)
 {
-    service_lock(l->shared);
-    for (uint32_t i = 0; i < l->count; i++) {
-        connection_drop(l->seated[i], "the daemon stops");
+    for (uint32_t i = l->count; i > 0; i--) {
+        service_lock(l->shared);
+        connection_drop(l->seated[i - 1], "the daemon stops");
+        service_unlock(l->shared);
+        end_connection(l, l->seated[i - 1]);
     }
-    service_unlock(l->shared);
 }
 
 void loop_run(loop *l)
@@ -273,7 +275,8 @@ void loop_run(loop *l)
         if (l->shared->options.clock_us() >= until_us) {
             drop_all(l);
             until_us = INT64_MAX;
+        } else {
+            turn(l, until_us);
         }
-        turn(l, until_us);
     }
 }

@@ -105,6 +105,14 @@ void session_send(session *s, const proto_message *message)
     }
 }
 
+static void end_listening(session *s)
+{
+    s->state = SESSION_CLOSING;
+    if (s->sink.touched) {
+        s->sink.touched(s->sink.context);
+    }
+}
+
 static void send_error(session *s, uint16_t about, uint64_t request, int code, const char *text)
 {
     char quoted[LOG_QUOTED];
@@ -122,7 +130,7 @@ static void send_error(session *s, uint16_t about, uint64_t request, int code, c
     metrics_count_error(code);
     session_send(s, &message);
     if (proto_error_closes(code)) {
-        s->state = SESSION_CLOSING;
+        end_listening(s);
     }
 }
 
@@ -150,7 +158,7 @@ void session_bye(session *s, const char *reason)
     proto_message message = {.type = PROTO_BYE};
     message.as.bye.reason = proto_str_of(reason);
     session_send(s, &message);
-    s->state = SESSION_CLOSING;
+    end_listening(s);
 }
 
 void session_prompt(session *s)

@@ -22,7 +22,7 @@ typedef struct session_sink {
     bool (*drained)(void *context);
     /* What comes next answers a request from a thread that may send it itself. NULL: that changes nothing. */
     void (*prompt)(void *context);
-    /* What session_stream_due says may have changed. NULL: nobody wants to know. */
+    /* What session_due_us says may have changed, or the session is closing. NULL: nobody wants to know. */
     void (*touched)(void *context);
 } session_sink;
 

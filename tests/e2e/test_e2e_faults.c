@@ -2,6 +2,7 @@
  * and when it is over all is as before. */
 #define _GNU_SOURCE /* prlimit */
 #include "check.h"
+#include "e2e/bare.h"
 #include "e2e/daemon.h"
 
 #include <dirent.h>
@@ -135,4 +136,29 @@ TEST(e2e_handshakes_that_drip_in_are_ended_and_nobody_waits_for_them)
     CHECK(is_served(client));
     awtclient_close(client);
     CHECK_INT(daemon_stop(&daemon), 0);
+}
+
+/* Asks for more than it takes, and takes nothing. */
+static int deaf_client(const daemon_process *daemon)
+{
+    enum { LOOKS = 2000 };
+    const int fd = bare_open(daemon->address, NULL);
+    proto_message look = {.type = PROTO_QUERY, .flags = PROTO_FLAG_REQUIRED, .request = 5};
+    look.as.query.forest = bare_create(fd, 1);
+    look.as.query.latest = 1;
+    for (int n = 0; n < LOOKS; n++) {
+        CHECK(bare_send(fd, &look));
+    }
+    return fd;
+}
+
+TEST(e2e_daemon_stops_though_clients_take_nothing_and_have_gone)
+{
+    const char *const arguments[] = {"--no-auth", "--drain-grace", "0", NULL};
+    daemon_process daemon;
+    CHECK(daemon_start(&daemon, 1, arguments));
+    const int stays = deaf_client(&daemon), goes = deaf_client(&daemon);
+    close(goes);
+    CHECK_INT(daemon_stop(&daemon), 0);
+    close(stays);
 }

@@ -64,6 +64,7 @@ bool wire_connect(wire *w, int i, void (*hear)(void *context, const proto_messag
     c->hear = hear;
     c->context = context;
     c->size = 0;
+    c->deaf = false;
     service_lock(&w->shared);
     connection_enter(c->served, homes_hot(&w->homes));
     service_unlock(&w->shared);
@@ -107,7 +108,7 @@ static void take_messages(wire_client *c)
 static bool hear(wire *w, int i)
 {
     wire_client *c = &w->clients[i];
-    if (c->fd < 0) {
+    if (c->fd < 0 || c->deaf) {
         return false;
     }
     const ssize_t got = recv(c->fd, c->bytes + c->size, WIRE_BYTES - c->size, 0);
@@ -180,6 +181,13 @@ static bool work(wire *w)
         service_unlock(&w->shared);
     }
     return any;
+}
+
+void wire_turns(wire *w)
+{
+    for (int n = 0; give_turns(w); n++) {
+        ASSERT(n < SETTLED);
+    }
 }
 
 void wire_settle(wire *w)

@@ -11,6 +11,7 @@ enum { WIRE_CLIENTS = 4, WIRE_BYTES = 4 << 20 /* of one message at most */ };
 typedef struct wire_client {
     connection *served; /* the daemon's end; NULL: it is gone */
     int fd;             /* the client's; -1: it is gone */
+    bool deaf;          /* reads nothing */
     void (*hear)(void *context, const proto_message *message);
     void *context;
     size_t size;
@@ -40,6 +41,8 @@ void wire_send(wire *w, int i, const proto_message *message);
 /* The same with bytes that may be anything. */
 void wire_send_bytes(wire *w, int i, const unsigned char *bytes, size_t size);
 
+/* Gives turns until nothing moves any more; no job runs, and nobody hears. */
+void wire_turns(wire *w);
 /* Gives turns and runs jobs, and clients hear, until nothing moves any more. */
 void wire_settle(wire *w);
 /* The clock goes on by so much at once; then wire_settle. */
