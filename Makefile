@@ -136,7 +136,7 @@ $(B)/messages.mjs: clients/web/make_messages.mjs proto/messages.def proto/errors
 web: $(B)/messages.mjs $(B)/receiver.wasm $(B)/motion.wasm
 
 # The client library without its socket, its poll and its random numbers: likewise.
-SRC_portable := $(filter core/%,$(SRC_receiver)) $(wildcard proto/*.c) $(patsubst %,clients/%.c,awtclock awtframes awtpace awtspace \
+SRC_portable := $(filter core/%,$(SRC_receiver)) $(wildcard proto/*.c) $(patsubst %,clients/%.c,awtclock awtframes awtlead awtpace awtspace \
 	awtwrite codec framemix framering openrequests outqueue)
 EXPORTS_portable := $(EXPORTS),_awtcodec_init,_awtcodec_next,_awtframes_create,_awtframes_take,_awtframes_show,_awtwrite_points
 $(B)/client.dll: $(SRC_portable) $(HEADERS)

@@ -1,7 +1,7 @@
 /* awtclient.h: the one header of libawtclient, for C and C++. It brings the others: links that never wait (awtlink.h),
- * and come back by themselves (awtsession.h), frames to hair of any time (awtframes.h, awtpace.h), into an engine's
- * memory (awtwrite.h) and axes (awtspace.h), clocks and credit (awtclock.h), the short way to hair (awthair.h), and the
- * messages (proto.h).
+ * and come back by themselves (awtsession.h), frames to hair of any time (awtframes.h), behind the stream for who looks
+ * on (awtpace.h) and ahead of it for who drives (awtlead.h), into an engine's memory (awtwrite.h) and axes
+ * (awtspace.h), clocks and credit (awtclock.h), the short way to hair (awthair.h), and the messages (proto.h).
  *
  * Here is talking to awtd by calls that wait: a session, and a poll until what is wanted has come. Options and errors
  * are in awtlink.h. No call waits longer than the options' timeout_ms, whatever the other end does: then its error is
@@ -14,6 +14,7 @@
 #include "awtclock.h"
 #include "awtframes.h"
 #include "awthair.h"
+#include "awtlead.h"
 #include "awtlink.h"
 #include "awtpace.h"
 #include "awtsession.h"

@@ -1,6 +1,7 @@
 /* awtclock.c: see awtclock.h. */
 #include "awtclock.h"
 
+#define UNEVEN_US 50000 /* more than this is taken for a queue, which a larger window would only lengthen */
 #define LONGEST_US (INT64_C(1) << 60) /* times beyond this are no times, and sums of these do not overflow */
 
 static bool time_good(int64_t time_us)
@@ -57,7 +58,13 @@ int64_t awtclock_age_us(const awtclock *clock, uint32_t age_us)
 
 uint32_t awtclock_credit(const awtclock *clock, double rate, int64_t target_age_us)
 {
-    const double wanted = (double)awtclock_round_us(clock) * 1e-6 * rate + 2;
+    const int64_t least_us = awtclock_round_us(clock);
+    int64_t round_us = least_us;
+    for (int i = 0; i < AWTCLOCK_SAMPLES && (uint32_t)i < clock->count; i++) {
+        round_us = clock->round_us[i] > round_us ? clock->round_us[i] : round_us;
+    }
+    round_us = round_us - least_us > UNEVEN_US ? least_us + UNEVEN_US : round_us;
+    const double wanted = (double)round_us * 1e-6 * rate + 2;
     const double greatest = (double)target_age_us * 1e-6 * rate;
     const double window = wanted < greatest ? wanted : greatest;
     return window >= 1 ? window < 1000 ? (uint32_t)(window + 1e-6) : 1000 : 1;

@@ -31,7 +31,8 @@ int64_t awtclock_round_us(const awtclock *clock);
 int64_t awtclock_age_us(const awtclock *clock, uint32_t age_us);
 
 /* How many frames a subscription should have under way: those that fit the way there and back at `rate` frames a
- * second, and two (one is being made, one being decoded), but no more than make `target_age_us`. At least 1. */
+ * second, where that takes the longest of late (by 50 ms more than the least at most: beyond, it is a queue), and two
+ * (one is being made, one being decoded), but no more than make `target_age_us`. At least 1. */
 uint32_t awtclock_credit(const awtclock *clock, double rate, int64_t target_age_us);
 
 #ifdef __cplusplus

@@ -15,14 +15,15 @@ extern "C" {
 #endif
 
 enum {
-    AWTFRAMES_KEPT = 8,   /* decoded frames to show from */
+    AWTFRAMES_KEPT = 16,  /* decoded frames to show from, at most; memory is taken for as many as come ahead */
     AWTFRAMES_WAITING = 8 /* frames to decode; of more the oldest is left out: nothing builds on what is not decoded */
 };
 
 typedef struct awtframes awtframes;
 
-/* Beyond the newest frame motion goes on as it was for at most `extrapolate_us`, then the hair stands. NULL: no memory.
- * The caller owns it: awtframes_destroy. */
+/* Beyond the newest frame motion goes on as it was, ever slower, until the hair stands, after twice `extrapolate_us`,
+ * that far beyond; so a late frame is a moment of slower hair. 0: it stands at once. NULL: no memory. The caller owns
+ * it: awtframes_destroy. */
 awtframes *awtframes_create(int64_t extrapolate_us);
 /* Not while a job decodes. Accepts NULL. */
 void awtframes_destroy(awtframes *frames);
@@ -50,7 +51,7 @@ int64_t awtframes_newest_us(const awtframes *frames);
 
 typedef enum awtframes_way {
     AWTFRAMES_BETWEEN, /* between two frames, or at one */
-    AWTFRAMES_BEYOND,  /* beyond the newest, by its motion */
+    AWTFRAMES_BEYOND,  /* beyond the newest, by its motion, slowing down */
     AWTFRAMES_HELD     /* the hair stands: too far beyond, or before the oldest, or there is one frame only */
 } awtframes_way;
 

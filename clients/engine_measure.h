@@ -5,14 +5,20 @@
 #include "awtclock.h"
 #include "awtframes.h"
 
+/* Who made hair stall: the loop itself, where it was not woken in time; the daemon, where the frames that it ended with
+ * were old when they left it; else what is between them. */
+typedef enum engine_cause { ENGINE_BY_LOOP, ENGINE_BY_DAEMON, ENGINE_BY_WAY, ENGINE_CAUSES } engine_cause;
+
 typedef struct engine_measure {
     int64_t tick_us;            /* length of a tick */
     int64_t lead_us;            /* how far ahead the daemon was asked at the end */
     uint64_t ticks, late_ticks; /* late: shown more than a tick after it was due */
     int64_t latest_us;          /* the greatest lateness */
     uint64_t shown, backwards;
-    uint64_t stall, longest_stall; /* ticks in a row in which the hair stood while its head moved on */
-    int64_t last_shown_us;
+    int64_t last_time_us, last_shown_us; /* of the loop, and of the hair */
+    int64_t stall_us;                    /* how long the hair has gone on by less than half of the time; 0: it goes */
+    int64_t longest_stall_us[ENGINE_CAUSES];
+    int64_t woken_late_us, left_late_us; /* when that last was: simulated time; 0: never */
     uint64_t received, undecoded, busy, losses;
     double off_sum_m, off_greatest_m, age_sum_us, age_greatest_us, bytes;
 } engine_measure;
@@ -24,7 +30,8 @@ void engine_measure_frame(engine_measure *m, const struct proto_frame *frame, co
 /* Hair was shown at simulated time `time_us`, with the head truly there. */
 void engine_measure_shown(engine_measure *m, const awtframes_shown *shown, int64_t time_us, const proto_pose *truth);
 
-/* As text on standard output, or as JSON into a file ("-": standard output). False: why has been said. */
-bool engine_measure_tell(const engine_measure *m, const awtframes *frames, const awtclock *clock, const char *json);
+/* As text on standard output, and as JSON into a file unless that is NULL ("-": JSON alone on standard output). False:
+ * why has been said. */
+bool engine_measure_tell(engine_measure *m, const awtframes *frames, const awtclock *clock, const char *json);
 
 #endif

@@ -48,9 +48,6 @@ static bool begin_shape(framemix *mix, const geom_strands *strands)
     for (int i = 0; i < 2; i++) {
         made = (mix->shown[i] = calloc(1, size)) != NULL && made;
     }
-    for (int i = 0; i < AWTFRAMES_KEPT; i++) {
-        made = (mix->frames[i].positions = malloc(size)) != NULL && made;
-    }
     if (!made) {
         framemix_fini(mix);
         mix->strand_count = mix->points_per_strand = 0;
@@ -85,6 +82,31 @@ static void drop_one(framemix *mix)
     mix->count--;
 }
 
+/* Those before the one that was shown last leave: time does not go back. Two stay, to go on beyond by. */
+static void drop_shown(framemix *mix)
+{
+    while (mix->count > 2 && frame_at(mix, 1)->time_us <= mix->shown_us) {
+        mix->first = (mix->first + 1) % AWTFRAMES_KEPT;
+        mix->count--;
+    }
+}
+
+/* The place after the newest, with memory: of its own, or of one that has left, or new, so that no more is taken than
+ * was wanted at a time. NULL: no memory. */
+static mix_frame *free_place(framemix *mix)
+{
+    mix_frame *place = &mix->frames[(mix->first + mix->count) % AWTFRAMES_KEPT];
+    for (uint32_t i = mix->count + 1; i < AWTFRAMES_KEPT && !place->positions; i++) {
+        mix_frame *left = &mix->frames[(mix->first + i) % AWTFRAMES_KEPT];
+        place->positions = left->positions;
+        left->positions = NULL;
+    }
+    if (!place->positions) {
+        place->positions = malloc((floats_of(mix) + 1) * sizeof(float));
+    }
+    return place->positions ? place : NULL;
+}
+
 bool framemix_add(framemix *mix, const geom_strands *strands)
 {
     const bool same = mix->shown[0] && mix->strand_count == strands->strand_count &&
@@ -95,10 +117,14 @@ bool framemix_add(framemix *mix, const geom_strands *strands)
     if (!same && !begin_shape(mix, strands)) {
         return false;
     }
+    drop_shown(mix);
     if (mix->count == AWTFRAMES_KEPT) {
         drop_one(mix);
     }
-    mix_frame *place = &mix->frames[(mix->first + mix->count) % AWTFRAMES_KEPT];
+    mix_frame *place = free_place(mix);
+    if (!place) {
+        return false;
+    }
     place->time_us = strands->time_us;
     memcpy(place->head.position, strands->head.position, sizeof place->head.position);
     memcpy(place->head.orientation, strands->head.orientation, sizeof place->head.orientation);
@@ -132,7 +158,7 @@ static mix_pair hold(const mix_frame *frame)
     return (mix_pair){frame, frame, 0, frame->time_us, AWTFRAMES_HELD};
 }
 
-/* Beyond the newest: on by its last motion, within the bound. */
+/* Beyond the newest: on by its last motion, ever slower: it stands at the bound after twice that time. */
 static mix_pair beyond(const framemix *mix, int64_t time_us)
 {
     const mix_frame *newest = frame_at(mix, mix->count - 1);
@@ -140,8 +166,9 @@ static mix_pair beyond(const framemix *mix, int64_t time_us)
     if (before == newest || jumped(before, newest)) {
         return hold(newest);
     }
-    const bool far = time_us > newest->time_us + mix->extrapolate_us;
-    const int64_t at_us = far ? newest->time_us + mix->extrapolate_us : time_us;
+    const double bound = (double)mix->extrapolate_us, past = (double)time_us - (double)newest->time_us;
+    const bool far = past >= 2 * bound;
+    const int64_t at_us = newest->time_us + (far ? mix->extrapolate_us : (int64_t)(past - past * past / (4 * bound)));
     const double share = (double)(at_us - before->time_us) / (double)(newest->time_us - before->time_us);
     return (mix_pair){before, newest, share, at_us, far ? AWTFRAMES_HELD : AWTFRAMES_BEYOND};
 }

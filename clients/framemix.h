@@ -8,7 +8,7 @@
 typedef struct mix_frame {
     int64_t time_us;
     proto_pose head;
-    float *positions; /* heap, [mix's strands * points][3] */
+    float *positions; /* heap, [mix's strands * points][3]; NULL: never needed yet */
 } mix_frame;
 
 /* Embedded: framemix_init. One thread. */
@@ -28,7 +28,7 @@ void framemix_init(framemix *mix, int64_t extrapolate_us);
 void framemix_fini(framemix *mix);
 
 /* Copies a frame. One that is not newer than the newest is left out; one of another shape begins anew. False: no
- * memory; then there are no frames. */
+ * memory: it is left out. */
 bool framemix_add(framemix *mix, const geom_strands *strands);
 /* INT64_MIN: none. */
 int64_t framemix_newest_us(const framemix *mix);

@@ -3,14 +3,14 @@
 # them, in the shared libraries and in the static ones, so that no name of ours meets one of the engine's.
 VERSION := $(shell sed -n 's/.*AWTD_VERSION "\(.*\)"/\1/p' core/base/version.h)
 SONAME := $(firstword $(subst ., ,$(VERSION)))
-SEEN_libawtclient := awtclient_* awthair_* awtsession_* awtlink_* awtframes_* awtclock_* awtpace_* awtspace_* awtwrite_* proto_*
+SEEN_libawtclient := awtclient_* awthair_* awtsession_* awtlink_* awtframes_* awtclock_* awtlead_* awtpace_* awtspace_* awtwrite_* proto_*
 SEEN_libawt := awt_*
 NEEDS_libawtclient := -lm
 NEEDS_libawt := -ltinygltf -ldraco -lm
-SRC_libawtclient := $(patsubst %,clients/%.c,awtclient awthair awtsession awtlink awtlink_receive awtframes awtclock awtpace awtspace \
+SRC_libawtclient := $(patsubst %,clients/%.c,awtclient awthair awtsession awtlink awtlink_receive awtframes awtclock awtlead awtpace awtspace \
 	awtwrite backoff codec framemix framering handshake openrequests outqueue sessionbook sessionoptions socket) $(SRC_proto) core/base/options.c $(filter core/%,$(SRC_receiver))
 SRC_libawt := $(SRC_core)
-HEADERS_libawtclient := $(patsubst %,clients/%.h,awtclient awthair awtsession awtlink awtframes awtclock awtpace awtspace awtwrite) \
+HEADERS_libawtclient := $(patsubst %,clients/%.h,awtclient awthair awtsession awtlink awtframes awtclock awtlead awtpace awtspace awtwrite) \
 	proto/proto.h proto/messages.def proto/errors.def
 HEADERS_libawt := core/awt.h
 LIBRARIES := libawt libawtclient

@@ -1,9 +1,10 @@
 #!/bin/sh
 # soak.sh: what takes longer than make test may, with the time that each part took: ten simulated minutes of every style under
 # the most violent motion there is, what has threads under TSan, the same bits from both compilers at every optimisation and on
-# another architecture, kills at any moment, no memory anywhere, and fuzzing of all that reads bytes from outside. Its last line counts all.
+# another architecture, kills at any moment, no memory anywhere, minutes of a game's loop, and fuzzing of all that reads bytes
+# from outside. Its last line counts all.
 #
-# PARTS: these alone, of violence bits around fuzz clang kills memory tsan.
+# PARTS: these alone, of violence bits around minutes fuzz clang kills memory tsan.
 # AWT_DATA: where motion files are (else ../shared/data); SECONDS_SIMULATED, FUZZ_SECONDS (of each target): for a shorter run.
 set -u
 cd "$(dirname "$0")/.."
@@ -169,6 +170,11 @@ part_around() {
     took "TLS and container"
 }
 
+part_minutes() {
+    suite "minutes of a game's loop" sh tests/minutes.sh build/release
+    took "minutes of a game's loop"
+}
+
 part_fuzz() {
     fuzzer
     for target in strands hierarchy motion message snapshot frame json delta session; do
@@ -202,7 +208,7 @@ part_tsan() {
 
 build config=release
 took building
-for part in ${PARTS:-violence bits around fuzz clang kills memory tsan}; do
+for part in ${PARTS:-violence bits around minutes fuzz clang kills memory tsan}; do
     part_$part
 done
 finish

@@ -13,7 +13,7 @@ ${MAKE:-make} -s install config="$(basename "$build")" prefix="$place" > "$place
 seen() { nm -g --defined-only "$@" | awk 'NF == 3 && $2 != "A" { sub(/@.*/, "", $3); print $3 }'; }
 for kind in a so; do
     flag=$([ $kind = so ] && echo -D || echo -g)
-    others=$(seen "$flag" "$place/lib/libawtclient.$kind" | grep -vE '^(awt(client|hair|session|link|frames|clock|pace|space|write)|proto)_' || true)
+    others=$(seen "$flag" "$place/lib/libawtclient.$kind" | grep -vE '^(awt(client|hair|session|link|frames|clock|lead|pace|space|write)|proto)_' || true)
     [ -z "$others" ] || fail "libawtclient.$kind shows $others"
 done
 

@@ -2,7 +2,8 @@
  * with a delay, jitter and a limit of bytes a second in each direction.
  *
  * One thread, one poll. A connection is two sockets and two lanes (lane.h); when one end has closed and its lane has
- * run dry, both are closed. */
+ * run dry, both are closed. On SIGTERM it says by how much it was late itself: then the machine was busy, not the line
+ * bad. */
 #include "relay/lane.h"
 
 #include "base/options.h"
@@ -13,6 +14,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,8 +41,17 @@ typedef struct relay {
     struct addrinfo *target;
     lane_rules rules;
     uint64_t seed;
+    int64_t latest_us; /* after a piece was due it was sent */
     relay_pair pairs[RELAY_CONNECTIONS];
 } relay;
+
+static volatile sig_atomic_t ended;
+
+static void end(int signal_number)
+{
+    (void)signal_number;
+    ended = 1;
+}
 
 static int64_t now_us(void)
 {
@@ -121,11 +132,13 @@ static void read_end(relay_end *end)
 }
 
 /* Writes what is due of one end's lane to the other. False: that one is gone. */
-static bool write_due(relay_end *from, const relay_end *to)
+static bool write_due(relay_end *from, const relay_end *to, int64_t *latest_us)
 {
     size_t size;
     const unsigned char *bytes;
     while ((bytes = lane_due(&from->lane, now_us(), &size)) != NULL) {
+        const int64_t late_us = now_us() - lane_next_us(&from->lane);
+        *latest_us = late_us > *latest_us ? late_us : *latest_us;
         ssize_t sent = send(to->fd, bytes, size, MSG_NOSIGNAL);
         if (sent < 0) {
             return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
@@ -135,13 +148,13 @@ static bool write_due(relay_end *from, const relay_end *to)
     return true;
 }
 
-static void forward(relay_pair *pair)
+static void forward(relay_pair *pair, int64_t *latest_us)
 {
     bool lost = false, drained = false;
     for (int i = 0; i < 2; i++) {
         relay_end *from = &pair->ends[i];
         read_end(from);
-        lost = lost || !write_due(from, &pair->ends[1 - i]);
+        lost = lost || !write_due(from, &pair->ends[1 - i], latest_us);
         drained = drained || (from->ended && from->lane.count == 0);
     }
     if (lost || drained) {
@@ -178,18 +191,20 @@ static int fill_polls(relay *self, struct pollfd *polls, int64_t *next_us)
 static void run(relay *self)
 {
     struct pollfd polls[1 + 2 * RELAY_CONNECTIONS];
-    for (;;) {
+    while (!ended) {
         int64_t next_us;
         const int count = fill_polls(self, polls, &next_us);
         const int64_t left_us = next_us == INT64_MAX ? INT64_MAX : next_us - now_us();
         const int left_ms = next_us == INT64_MAX ? -1 : left_us > 0 ? (int)((left_us + 999) / 1000) : 0;
-        poll(polls, (nfds_t)count, left_ms);
+        if (poll(polls, (nfds_t)count, left_ms) < 0) {
+            continue; /* a signal: `polls` say nothing */
+        }
         if (polls[0].revents) {
             accept_client(self);
         }
         for (relay_pair *pair = self->pairs; pair < self->pairs + RELAY_CONNECTIONS; pair++) {
             if (pair->used) {
-                forward(pair);
+                forward(pair, &self->latest_us);
             }
         }
     }
@@ -270,5 +285,9 @@ int main(int argc, char **argv)
         fprintf(stderr, "awt-relay: cannot listen on %s: %s\n", listen_text, strerror(errno));
         return 1;
     }
+    struct sigaction action = {.sa_handler = end};
+    sigaction(SIGTERM, &action, NULL);
     run(&self);
+    printf("late by %.1f ms at most\n", (double)self.latest_us / 1000);
+    return 0;
 }

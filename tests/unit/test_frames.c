@@ -1,8 +1,6 @@
 /* test_frames.c: hair between frames, in simulated time: no clock, no socket. */
 #include "check.h"
-#include "awtclock.h"
 #include "awtpace.h"
-#include "awtwrite.h"
 #include "framemix.h"
 #include "relay/lane.h"
 
@@ -10,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STRANDS = 3, POINTS = 4, FLOATS = STRANDS * POINTS * 3 };
+enum { STRANDS = 3, POINTS = 4, FLOATS = STRANDS * POINTS * 3, LAST = AWTFRAMES_KEPT + 12 };
 
 /* Hair that moves evenly: by 1 m/s along x in the head frame, on a head that moves by 2 m/s along z and turns. */
 static void fill(geom_strands *strands, float *positions, float *widths, int64_t time_us)
@@ -73,9 +71,15 @@ TEST(frames_show_hair_of_any_time_between_them_and_a_little_beyond)
     CHECK_NEAR((double)shown.previous[0], 0.1, 1e-6);
     CHECK_NEAR(shown.previous_head.position[2], 0.2, 1e-9);
     CHECK_NEAR((double)shown.greatest[0], 0.01 * (FLOATS - 3) + 0.12, 1e-5);
-    CHECK(framemix_show(&mix, 150000, &shown));
-    CHECK_INT(shown.way, AWTFRAMES_BEYOND);
-    CHECK_NEAR(distance(&shown, 150000), 0, 1e-4);
+    int64_t last_us = 133333, went_us = 7000;
+    for (int64_t time_us = 140000; time_us < 173333; time_us += 7000) { /* ever slower */
+        CHECK(framemix_show(&mix, time_us, &shown));
+        CHECK_INT(shown.way, AWTFRAMES_BEYOND);
+        CHECK(shown.time_us > last_us && shown.time_us - last_us < went_us);
+        CHECK_NEAR(distance(&shown, shown.time_us), 0, 1e-4);
+        went_us = shown.time_us - last_us;
+        last_us = shown.time_us;
+    }
     CHECK(framemix_show(&mix, 400000, &shown));
     CHECK_INT(shown.way, AWTFRAMES_HELD);
     CHECK_INT(shown.time_us, 153333);
@@ -93,17 +97,37 @@ TEST(frames_that_come_far_ahead_do_not_push_out_what_is_shown)
     add(&mix, 0);
     add(&mix, 16667);
     CHECK(framemix_show(&mix, 8000, &shown));
-    for (int64_t n = 2; n < 20; n++) {
+    for (int64_t n = 2; n < LAST; n++) {
         add(&mix, n * 16667);
     }
-    for (int64_t time_us = 10000; time_us <= 19 * 16667; time_us += 7000) {
+    for (int64_t time_us = 10000; time_us <= (LAST - 1) * 16667; time_us += 7000) {
         CHECK(framemix_show(&mix, time_us, &shown));
         CHECK_INT(shown.way, AWTFRAMES_BETWEEN);
         CHECK_INT(shown.time_us, time_us);
         CHECK_NEAR(distance(&shown, time_us), 0, 1e-2); /* a straight line over up to 200 ms */
     }
-    add(&mix, 20 * 16667); /* of those that were shown the oldest leaves */
-    CHECK_INT(framemix_newest_us(&mix), 20 * 16667);
+    add(&mix, LAST * 16667); /* of those that were shown the oldest leave */
+    CHECK_INT(framemix_newest_us(&mix), LAST * 16667);
+    framemix_fini(&mix);
+}
+
+TEST(frames_take_memory_for_as_many_as_come_ahead)
+{
+    framemix mix;
+    awtframes_shown shown;
+    framemix_init(&mix, 20000);
+    for (int64_t n = 0; n < 1000; n++) {
+        add(&mix, n * 16667);
+        for (int64_t time_us = (n - 2) * 16667; n > 2 && time_us < (n - 1) * 16667; time_us += 6944) {
+            CHECK(framemix_show(&mix, time_us, &shown));
+            CHECK_INT(shown.way, AWTFRAMES_BETWEEN);
+        }
+    }
+    int taken = 0;
+    for (int i = 0; i < AWTFRAMES_KEPT; i++) {
+        taken += mix.frames[i].positions != NULL;
+    }
+    CHECK(taken >= 2 && taken <= 5);
     framemix_fini(&mix);
 }
 
@@ -181,125 +205,6 @@ TEST(frames_at_144_hz_are_even_over_a_line_of_50_ms_and_jitter)
     CHECK_NEAR(off, 0, 1e-3);
     lane_fini(&line);
     framemix_fini(&mix);
-}
-
-TEST(frames_go_into_an_engines_memory_in_its_format_and_nowhere_else)
-{
-    const float points[6] = {0.25f, -0.5f, 1, 65519, 6.1e-5f, -1e-7f};
-    unsigned char memory[64];
-    awtwrite_target target = {.memory = memory, .size = 40, .stride = 20, .format = AWTWRITE_F32};
-    float f[3];
-    uint16_t h[3];
-    memset(memory, 0xEE, sizeof memory);
-    CHECK(awtwrite_points(&target, points, 2));
-    memcpy(f, memory + 20, sizeof f);
-    CHECK_BYTES(f, points + 3, sizeof f);
-    for (int i = 12; i < 20; i++) {
-        CHECK_INT(memory[i], 0xEE);
-    }
-    CHECK_INT(memory[32], 0xEE);
-    target.size = 31;
-    CHECK(!awtwrite_points(&target, points, 2));
-    target = (awtwrite_target){.memory = memory, .size = 12, .format = AWTWRITE_F16};
-    CHECK(awtwrite_points(&target, points, 2));
-    memcpy(h, memory, sizeof h);
-    CHECK_INT(h[0], 0x3400);
-    CHECK_INT(h[1], 0xB800);
-    CHECK_INT(h[2], 0x3C00);
-    memcpy(h, memory + 6, sizeof h);
-    CHECK_INT(h[0], 0x7BFF); /* 65504, the greatest */
-    CHECK_INT(h[1], 0x03FF); /* the greatest below 2^-14 */
-    CHECK_INT(h[2], 0x8002);
-    target = (awtwrite_target){.memory = memory, .size = 12, .format = AWTWRITE_UNORM16, .space = AWTSPACE_UNREAL};
-    CHECK(!awtwrite_points(&target, points, 1)); /* no box */
-    for (int i = 0; i < 3; i++) {
-        target.box_origin[i] = -100;
-        target.box_size[i] = 200;
-    }
-    CHECK(awtwrite_points(&target, points, 2));
-    memcpy(h, memory, sizeof h);
-    CHECK_INT(h[0], 65535); /* z: 100 cm */
-    CHECK_INT(h[1], 24576); /* -x: -25 cm */
-    CHECK_INT(h[2], 16384); /* y: -50 cm */
-    memcpy(h, memory + 6, sizeof h);
-    CHECK_INT(h[1], 0); /* clamped */
-}
-
-TEST(frames_of_engines_turn_points_and_turns_alike_and_back)
-{
-    const awtspace spaces[] = {AWTSPACE_OURS, AWTSPACE_UNREAL, AWTSPACE_UNITY, AWTSPACE_GODOT};
-    const float nose[3] = {0, 0, 1}, top[3] = {0, 1, 0}, left[3] = {1, 0, 0};
-    float out[3];
-    awtspace_points_to(AWTSPACE_UNREAL, nose, out, 1);
-    CHECK(out[0] == 100 && out[1] == 0 && out[2] == 0);
-    awtspace_points_to(AWTSPACE_UNREAL, top, out, 1);
-    CHECK(out[0] == 0 && out[1] == 0 && out[2] == 100);
-    awtspace_points_to(AWTSPACE_UNREAL, left, out, 1);
-    CHECK(out[0] == 0 && out[1] == -100 && out[2] == 0); /* +Y is to the right */
-    awtspace_points_to(AWTSPACE_UNITY, left, out, 1);
-    CHECK(out[0] == -1 && out[1] == 0 && out[2] == 0);
-    for (int s = 0; s < 4; s++) {
-        const double angle = 0.7, axis[3] = {2.0 / 7, 3.0 / 7, 6.0 / 7};
-        double position[3] = {0.3, -0.2, 0.5}, turn[4], zero[3] = {0, 0, 0};
-        for (int i = 0; i < 3; i++) {
-            turn[i] = axis[i] * sin(angle / 2);
-        }
-        turn[3] = cos(angle / 2);
-        /* Rodrigues' formula there must be the mapped result of Rodrigues' formula here. */
-        float rotated[3], expected[3], from[3] = {0.3f, -0.2f, 0.5f}, mapped[3];
-        double q[4];
-        for (int space = 0; space < 2; space++) {
-            memcpy(q, turn, sizeof q);
-            const float *v = from;
-            if (space == 1) {
-                awtspace_pose_to(spaces[s], zero, q);
-                awtspace_points_to(spaces[s], from, mapped, 1);
-                v = mapped;
-            }
-            const double x = (double)v[0], y = (double)v[1], z = (double)v[2];
-            const double tx = 2 * (q[1] * z - q[2] * y), ty = 2 * (q[2] * x - q[0] * z), tz = 2 * (q[0] * y - q[1] * x);
-            float *to = space == 0 ? expected : rotated;
-            to[0] = (float)(x + q[3] * tx + q[1] * tz - q[2] * ty);
-            to[1] = (float)(y + q[3] * ty + q[2] * tx - q[0] * tz);
-            to[2] = (float)(z + q[3] * tz + q[0] * ty - q[1] * tx);
-        }
-        awtspace_points_to(spaces[s], expected, expected, 1);
-        for (int i = 0; i < 3; i++) {
-            CHECK_NEAR((double)rotated[i], (double)expected[i], 1e-4);
-        }
-        memcpy(q, turn, sizeof q);
-        awtspace_pose_to(spaces[s], position, q);
-        awtspace_pose_from(spaces[s], position, q);
-        awtspace_points_from(spaces[s], mapped, mapped, 1);
-        for (int i = 0; i < 3; i++) {
-            CHECK_NEAR((double)mapped[i], (double)from[i], 1e-6);
-            CHECK_NEAR(position[i], (double)from[i], 1e-6);
-            CHECK_NEAR(q[i], turn[i], 1e-12);
-        }
-    }
-}
-
-TEST(frames_clock_takes_the_exchange_that_was_least_delayed)
-{
-    awtclock clock = {.count = 0};
-    int64_t offset_us, uncertainty_us;
-    CHECK(!awtclock_offset(&clock, &offset_us, &uncertainty_us));
-    CHECK_INT(awtclock_credit(&clock, 60, 100000), 2);
-    for (int64_t i = 0; i < 50; i++) { /* the daemon is 5 s ahead; the way out takes 10 ms and more, back 10 ms */
-        const int64_t sent = i * 1000000, out = 10000 + i * 7919 % 30000;
-        CHECK(awtclock_add(&clock, sent, sent + out + 5000000, sent + out + 5000100, sent + out + 10100));
-    }
-    CHECK(!awtclock_add(&clock, 0, 0, 0, -1));
-    CHECK(!awtclock_add(&clock, 0, INT64_MAX, INT64_MIN, 1));
-    CHECK(awtclock_offset(&clock, &offset_us, &uncertainty_us));
-    CHECK(llabs(offset_us - 5000000) <= uncertainty_us && uncertainty_us < 12500);
-    CHECK(awtclock_round_us(&clock) >= 20000 && awtclock_round_us(&clock) < 25000);
-    CHECK(awtclock_age_us(&clock, 3000) >= 13000);
-    clock.count = 0;
-    CHECK(awtclock_add(&clock, 0, 50000, 50000, 100000));
-    CHECK_INT(awtclock_credit(&clock, 60, 1000000), 8); /* 100 ms there and back at 60 Hz, and more than one */
-    CHECK_INT(awtclock_credit(&clock, 60, 50000), 3);
-    CHECK_INT(awtclock_credit(&clock, 60, 1), 1);
 }
 
 TEST(frames_that_are_garbage_are_told_and_do_no_harm)
