@@ -111,6 +111,14 @@ static bool play_prepare(play *p)
 /* ---- frames
  * ------------------------------------------------------------------------------------------------------------- */
 
+/* Ends the bar and says why a frame, counted from 0, did not come or cannot be kept. Always false. */
+static bool play_frame_failed(play *p, size_t frame, const char *why)
+{
+    progress_hide(&p->progress);
+    awtctl_failed("frame %zu: %s", frame + 1, why);
+    return false;
+}
+
 static bool play_ask_frame(play *p, size_t frame, proto_message *answer, uint32_t *last_write_us)
 {
     awtclient_error error;
@@ -127,83 +135,22 @@ static bool play_ask_frame(play *p, size_t frame, proto_message *answer, uint32_
     p->record.frames[frame].body = at.body;
     if (!awtclient_send(p->client, &move, &error) ||
         !play_stream_ask(&p->stream, time_us, answer, last_write_us, &error)) {
-        progress_hide(&p->progress);
-        awtctl_failed("frame %zu: %s", frame + 1, error.text);
-        return false;
+        return play_frame_failed(p, frame, error.text);
     }
     if (answer->as.frame.time_us != time_us) {
-        progress_hide(&p->progress);
-        awtctl_failed("frame %zu: the daemon answered for %lld us where %lld us were asked for", frame + 1,
-                      (long long)answer->as.frame.time_us, (long long)time_us);
-        return false;
+        char text[128];
+        snprintf(text, sizeof text, "the daemon answered for %lld us where %lld us were asked for",
+                 (long long)answer->as.frame.time_us, (long long)time_us);
+        return play_frame_failed(p, frame, text);
     }
     return true;
-}
-
-static void play_keep_figures(play_frame *f, const struct proto_frame *from)
-{
-    f->time_us = from->time_us;
-    f->active_nodes = from->active_nodes;
-    f->splits = from->splits;
-    f->merges = from->merges;
-    f->steps = from->steps;
-    f->queue_us = from->queue_us;
-    f->step_us = from->step_us;
-    f->encode_us = from->encode_us;
-    f->unreached_contacts = from->unreached_contacts;
-    f->clamped_points = from->clamped_points;
-    f->clamped_speeds = from->clamped_speeds;
-    f->link_error = from->link_error;
-    f->kinetic_energy_j = from->kinetic_energy_j;
-    f->bytes = from->glb.length;
-    f->delta = from->base != 0;
-}
-
-static bool play_measure(play *p, size_t frame, const struct proto_frame *from)
-{
-    awt_error error;
-    const geom_strands *strands = NULL;
-    awt_status status = play_stream_read(&p->stream, from, &strands, &error);
-    if (status == AWT_OK && strands) {
-        status = strandcheck_add(&p->record.strands, strands, &error);
-    }
-    if (status != AWT_OK) {
-        progress_hide(&p->progress);
-        awtctl_failed("frame %zu: %s", frame + 1, error.text);
-    }
-    return status == AWT_OK;
-}
-
-/* Writes and measures what is to be; each frame that others are deltas against is read. */
-static bool play_keep_geometry(play *p, size_t frame, const struct proto_frame *from)
-{
-    char path[4200], text[4300];
-    bool write = p->plan.out && (frame + 1) % p->every == 0;
-    if ((write || p->plan.check || frame == 0 || p->plan.deltas) && !play_measure(p, frame, from)) {
-        return false;
-    }
-    if (!write) {
-        return true;
-    }
-    play_frame_path(&p->record, frame, path, sizeof path);
-    p->record.frames[frame].written = files_write(path, from->glb.bytes, from->glb.length, text, sizeof text);
-    if (!p->record.frames[frame].written) {
-        progress_hide(&p->progress);
-        awtctl_failed("%s", text);
-    }
-    return p->record.frames[frame].written;
 }
 
 /* After the frame's bytes are done with. */
 static bool play_want_next(play *p, size_t frame)
 {
     awtclient_error error;
-    if (!play_stream_credit(&p->stream, &error)) {
-        progress_hide(&p->progress);
-        awtctl_failed("frame %zu: %s", frame + 1, error.text);
-        return false;
-    }
-    return true;
+    return play_stream_credit(&p->stream, &error) || play_frame_failed(p, frame, error.text);
 }
 
 /* The frame's way is over: its line can be printed. */
@@ -243,6 +190,8 @@ static bool play_frames(play *p)
     uint32_t write_us = 0;
     p->progress = progress_begin(stderr, "play", p->plan.quiet);
     for (size_t i = 0; i < p->frame_count; i++) {
+        const bool write = p->plan.out && (i + 1) % p->every == 0;
+        char text[4300];
         proto_message answer;
         if (!play_ask_frame(p, i, &answer, &write_us)) {
             return false;
@@ -253,7 +202,10 @@ static bool play_frames(play *p)
         if (i > 0) {
             play_finish_frame(p, i - 1, write_us);
         }
-        if (!play_keep_geometry(p, i, frame) || !play_want_next(p, i)) {
+        if (!play_keep_geometry(&p->record, &p->stream, i, frame, write, text, sizeof text)) {
+            return play_frame_failed(p, i, text);
+        }
+        if (!play_want_next(p, i)) {
             return false;
         }
         play_show_progress(p, i);

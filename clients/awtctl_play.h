@@ -99,8 +99,33 @@ typedef struct play_record {
     strandcheck strands;
 } play_record;
 
+/* The four stages of a frame's way, in its order; microseconds. */
+enum { PLAY_STAGE_QUEUE, PLAY_STAGE_STEP, PLAY_STAGE_ENCODE, PLAY_STAGE_WRITE, PLAY_STAGES };
+extern const char *const PLAY_STAGE_NAMES[PLAY_STAGES];
+uint32_t play_frame_stage(const play_frame *frame, int stage);
+
+/* Of all frames. */
+typedef struct play_summary {
+    struct {
+        double p50, p99, mean;
+    } stages[PLAY_STAGES];
+    uint32_t active_min, active_max;
+    double active_mean, bytes_mean;
+    uint64_t deltas;
+    uint64_t splits, merges, steps, unreached_contacts, clamped_points, clamped_speeds;
+    float link_error, last_kinetic_energy_j;
+} play_summary;
+
+play_summary play_record_summarise(const play_record *record);
+
 /* Path of a frame's file. */
 void play_frame_path(const play_record *record, size_t frame, char *path, size_t size);
+
+/* Fills the frame's figures, all but its poses and what it took to write. */
+void play_keep_figures(play_frame *frame, const struct proto_frame *from);
+/* Writes and measures what is to be; each frame that others are deltas against is read. False: `why` says why. */
+bool play_keep_geometry(play_record *record, play_stream *stream, size_t frame, const struct proto_frame *from,
+                        bool write, char *why, size_t size);
 
 void play_record_print_forest(const play_record *record, FILE *file);
 void play_record_print_frame(const play_record *record, size_t frame, FILE *file);

@@ -1,5 +1,5 @@
-/* awtlink_parts.h: what is in a link, for its two files: awtlink.c sends and is the whole, awtlink_receive.c takes what
- * comes. Private to them. */
+/* awtlink_parts.h: what is in a link, for its three files: awtlink.c is the whole, awtlink_send.c sends,
+ * awtlink_receive.c takes what comes. Private to them. */
 #ifndef CLIENTS_AWTLINK_PARTS_H
 #define CLIENTS_AWTLINK_PARTS_H
 
@@ -37,6 +37,8 @@ void link_note_wait(awtlink *link, long answer);
 
 /* Queues a copy, ready or not. As awtlink_queue, but nobody waits for an answer. */
 bool link_enqueue(awtlink *link, const proto_message *message, awtclient_error *error);
+/* Sends of the queue what the transport takes now, within the bound. */
+void link_flush(awtlink *link);
 
 /* Receives until a message is whole, the transport has no more, or it is enough for one call. */
 void link_receive(awtlink *link);

@@ -7,7 +7,7 @@ SEEN_libawtclient := awtclient_* awthair_* awtsession_* awtlink_* awtframes_* aw
 SEEN_libawt := awt_*
 NEEDS_libawtclient := -lm
 NEEDS_libawt := -ltinygltf -ldraco -lm
-SRC_libawtclient := $(patsubst %,clients/%.c,awtclient awthair awtsession awtlink awtlink_receive awtframes awtclock awtlead awtpace awtspace \
+SRC_libawtclient := $(patsubst %,clients/%.c,awtclient awthair awtsession awtsession_return awtlink awtlink_receive awtlink_send awtframes awtclock awtlead awtpace awtspace \
 	awtwrite backoff codec framemix framering handshake openrequests outqueue sessionbook sessionoptions socket) $(SRC_proto) core/base/options.c $(filter core/%,$(SRC_receiver))
 SRC_libawt := $(SRC_core)
 HEADERS_libawtclient := $(patsubst %,clients/%.h,awtclient awthair awtsession awtlink awtframes awtclock awtlead awtpace awtspace awtwrite) \
