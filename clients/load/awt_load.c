@@ -61,7 +61,7 @@ static bool round_laden(load_run *run, crew *c, uint32_t descriptors)
     const load_plan *p = run->plan;
     const uint32_t used = scenario_descriptors(run), most = descriptors > used ? descriptors - used : 0;
     idle *held = idle_open(run, p->idle < most ? p->idle : most, &run->idle);
-    timeline_make(&run->line, p->duration_ns, run->floor != NULL, true, 0);
+    timeline_make(&run->line, 0, p->duration_ns, run->floor != NULL, true, 0);
     const bool good = held && round_run(run, c, 0.5, 0.5);
     idle_close(held);
     return good;
@@ -71,7 +71,7 @@ static bool measure(load_run *run, uint32_t descriptors)
 {
     const load_plan *p = run->plan;
     crew *c = crew_create(run, p->threads);
-    timeline_make(&run->line, p->duration_ns, run->floor != NULL, false, p->pairs);
+    timeline_make(&run->line, p->settle_ns, p->duration_ns, run->floor != NULL, false, p->pairs);
     const bool laden = p->scenario == LOAD_IDLE;
     bool good = c && scenario_fill(run, c) && crew_gather(c, GATHER_LEAST_NS + p->connections * GATHER_NS_A_LINK);
     shown.bar = progress_begin(stderr, "load", p->quiet);

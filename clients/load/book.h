@@ -12,12 +12,12 @@ typedef struct book {
     hdr *age[LOAD_MODES];     /* of frames on arrival; none of the floor */
     hdr **pairs;              /* [pair_slices] latency of each slice, where pairs are compared; else NULL */
     uint32_t pair_slices;
-    atomic_uint_fast64_t due[LOAD_MODES];   /* requests, or frames, that were to come */
-    atomic_uint_fast64_t came[LOAD_MODES];  /* that came */
-    atomic_uint_fast64_t late[LOAD_MODES];  /* requests sent more than BOOK_LATE_NS after they were due */
-    atomic_uint_fast64_t bytes[LOAD_MODES]; /* of what came */
-    atomic_uint_fast64_t skipped;           /* frames that the daemon left out for want of credit */
-    atomic_uint_fast64_t stale;             /* frames that it flagged as older than asked for */
+    atomic_uint_fast64_t due[LOAD_MODES];     /* requests, or frames, that were to come */
+    atomic_uint_fast64_t came[LOAD_MODES];    /* that came */
+    atomic_uint_fast64_t late[LOAD_MODES];    /* requests sent more than BOOK_LATE_NS after they were due */
+    atomic_uint_fast64_t bytes[LOAD_MODES];   /* of what came */
+    atomic_uint_fast64_t skipped[LOAD_MODES]; /* frames that the daemon left out for want of credit */
+    atomic_uint_fast64_t stale[LOAD_MODES];   /* frames that it flagged as older than they should be */
     atomic_uint_fast64_t errors;
     atomic_flag told;           /* error_text is being, or has been, written */
     atomic_bool readable;       /* and may be read */

@@ -156,9 +156,13 @@ static void viewer_measure(caller *c, const proto_message *message)
 static void viewer_count(caller *c, const struct proto_frame *frame)
 {
     enum { STALE = 1 };
-    book *b = &c->m.run->book;
-    atomic_fetch_add_explicit(&b->skipped, frame->skipped, memory_order_relaxed);
-    atomic_fetch_add_explicit(&b->stale, frame->flags & STALE, memory_order_relaxed);
+    load_run *run = c->m.run;
+    const uint32_t slice = timeline_slice_at(&run->line, wait_now_ns() - run->begin_ns);
+    if (run->begin_ns > 0 && slice < run->line.slices) {
+        const load_mode mode = member_mode(&c->m, slice);
+        atomic_fetch_add_explicit(&run->book.skipped[mode], frame->skipped, memory_order_relaxed);
+        atomic_fetch_add_explicit(&run->book.stale[mode], frame->flags & STALE, memory_order_relaxed);
+    }
 }
 
 /* Gives back the credit of frames that have come: of a large window half of it in one message; of a small one, which is

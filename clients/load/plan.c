@@ -53,7 +53,7 @@ static unsigned choice(const char *name, const char *const *names, unsigned coun
 typedef struct given {
     const char *scenario, *kind, *level;
     long long connections, idle, forests, pairs, threads, strands, credit;
-    double rate, duration_s;
+    double rate, settle_s, duration_s;
 } given;
 
 static option_result read_options(int argc, char *const *argv, load_plan *p, given *g, char *error, size_t error_size)
@@ -65,6 +65,8 @@ static option_result read_options(int argc, char *const *argv, load_plan *p, giv
         {"scenario", OPTION_TEXT, "NAME", &g->scenario, 0, 0, "query, stream, mixed, idle, churn or slow-viewer"},
         {"duration", OPTION_REAL, "S", &g->duration_s, 0, 86400,
          "seconds that awtd is measured, and as long again the bare server; 0: the scenario's own"},
+        {"settle", OPTION_REAL, "S", &g->settle_s, 0, 60,
+         "seconds that the load runs before anything is measured, as heads of hair take to fall asleep"},
         {"connections", OPTION_INTEGER, "N", &g->connections, 0, LOAD_MAX_CONNECTIONS,
          "that ask or watch (slow-viewer: a tenth of them stalls); 0: the scenario's own number"},
         {"idle", OPTION_INTEGER, "N", &g->idle, 0, LOAD_MAX_CONNECTIONS,
@@ -155,6 +157,7 @@ static void take_numbers(load_plan *p, const given *g)
     p->idle = p->scenario == LOAD_IDLE ? number(g->idle, USUAL[p->scenario].idle) : 0;
     p->rate = g->rate > 0 ? g->rate : USUAL[p->scenario].rate;
     p->duration_ns = (int64_t)((g->duration_s > 0 ? g->duration_s : USUAL[p->scenario].duration_s) * 1e9);
+    p->settle_ns = (int64_t)(g->settle_s * 1e9);
     p->pairs = p->scenario == LOAD_SLOW_VIEWER ? (uint32_t)g->pairs : 0;
     p->strands = (uint32_t)g->strands;
     p->credit = (uint32_t)g->credit;

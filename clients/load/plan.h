@@ -22,11 +22,12 @@ const char *load_scenario_name(load_scenario scenario);
 /* True where drivers move forests and viewers watch. */
 bool load_scenario_streams(load_scenario scenario);
 
-enum { LOAD_MAX_CONNECTIONS = 16000, LOAD_MAX_FORESTS = 256, LOAD_MAX_PAIRS = 40 };
+enum { LOAD_MAX_CONNECTIONS = 16000, LOAD_MAX_FORESTS = 4096, LOAD_MAX_PAIRS = 40 };
 
 typedef struct load_plan {
     const char *address, *token_file;
     load_scenario scenario;
+    int64_t settle_ns;    /* that the load runs before */
     int64_t duration_ns;  /* that the daemon is measured */
     uint32_t connections; /* that ask, or that watch */
     uint32_t idle;        /* further ones that say nothing */

@@ -28,6 +28,11 @@ static double rate_of(const load_run *run, const atomic_uint_fast64_t *counts, l
     return run->busy_s[mode] > 0 ? (double)atomic_load(&counts[mode]) / run->busy_s[mode] : NAN;
 }
 
+static uint64_t of_daemon(const atomic_uint_fast64_t *counts)
+{
+    return (uint64_t)(atomic_load(&counts[LOAD_PLAIN]) + atomic_load(&counts[LOAD_LADEN]));
+}
+
 /* The daemon's slices that the figures are of. */
 static load_mode subject_of(const load_run *run)
 {
@@ -120,9 +125,8 @@ void report_table(const load_run *run, FILE *file)
     fprintf(file,
             "\nsent late (> 1 ms): %" PRIu64 " to awtd, %" PRIu64 " to the bare server; frames left out: %" PRIu64
             ", stale: %" PRIu64 "\n",
-            (uint64_t)(atomic_load(&b->late[LOAD_PLAIN]) + atomic_load(&b->late[LOAD_LADEN])),
-            (uint64_t)atomic_load(&b->late[LOAD_FLOOR]), (uint64_t)atomic_load(&b->skipped),
-            (uint64_t)atomic_load(&b->stale));
+            of_daemon(b->late), (uint64_t)atomic_load(&b->late[LOAD_FLOOR]), of_daemon(b->skipped),
+            of_daemon(b->stale));
     if (run->plan->pairs > 0) {
         fprintf(file, "p99 with stalled viewers / without, median of %" PRIu32 " pairs: %.3f\n", run->plan->pairs,
                 book_pair_ratio(b, &run->line));
@@ -155,7 +159,7 @@ bool report_json(const load_run *run, FILE *file)
     json_times(&j, "latency_us", b->latency[mode]);
     json_times(&j, "floor_us", b->latency[LOAD_FLOOR]);
     json_times(&j, "frame_age_us", b->age[mode]);
-    jsonout_unsigned(&j, "late_sends", atomic_load(&b->late[LOAD_PLAIN]) + atomic_load(&b->late[LOAD_LADEN]));
+    jsonout_unsigned(&j, "late_sends", of_daemon(b->late));
     jsonout_unsigned(&j, "errors", atomic_load(&b->errors));
     jsonout_close(&j);
     return jsonout_done(&j);

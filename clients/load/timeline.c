@@ -15,13 +15,16 @@ static void timeline_push(timeline *t, load_mode mode)
     t->modes[t->slices++] = (uint8_t)mode;
 }
 
-void timeline_make(timeline *t, int64_t daemon_ns, bool floor, bool laden, uint32_t pairs)
+void timeline_make(timeline *t, int64_t settle_ns, int64_t daemon_ns, bool floor, bool laden, uint32_t pairs)
 {
     const uint32_t most = TIMELINE_MAX_SLICES / 4; /* rounds: a pair and two slices of the bare server at most */
     int64_t rounds = pairs > 0 ? pairs : daemon_ns / SLICE_NS;
     rounds = rounds < TIMELINE_LEAST_PAIRS ? TIMELINE_LEAST_PAIRS : rounds > most ? most : rounds;
     *t = (timeline){.slice_ns = daemon_ns / rounds / (pairs > 0 ? 2 : 1)};
     t->busy_ns = t->slice_ns - t->slice_ns / QUIET_SHARE;
+    for (int64_t left_ns = settle_ns; left_ns > 0 && t->slices < most; left_ns -= t->slice_ns) {
+        timeline_push(t, LOAD_SETTLE);
+    }
     for (int64_t round = 0; round < rounds * (pairs > 0 ? 2 : 1); round++) {
         /* of pairs: plain, laden; laden, plain; and so on */
         const bool second = pairs > 0 && (round % 4 == 1 || round % 4 == 2);

@@ -13,9 +13,10 @@
 
 /* What a slice measures. */
 typedef enum load_mode {
-    LOAD_PLAIN, /* the daemon */
-    LOAD_LADEN, /* the daemon with what the scenario adds: idle connections, stalled viewers */
-    LOAD_FLOOR, /* the bare server */
+    LOAD_PLAIN,  /* the daemon */
+    LOAD_LADEN,  /* the daemon with what the scenario adds: idle connections, stalled viewers */
+    LOAD_FLOOR,  /* the bare server */
+    LOAD_SETTLE, /* nothing: the daemon is loaded, that it may come to its usual state */
     LOAD_MODES
 } load_mode;
 
@@ -35,8 +36,9 @@ load_side timeline_side(load_mode mode);
 
 /* `daemon_ns` of measuring the daemon, and with `floor` as long the bare server. `laden`: LOAD_LADEN instead of
  * LOAD_PLAIN; `pairs` > 0: so many pairs of both instead, each in the order opposite to the one before. Slices last
- * about a second, more where there would be too many, less where the time is short. */
-void timeline_make(timeline *t, int64_t daemon_ns, bool floor, bool laden, uint32_t pairs);
+ * about a second, more where there would be too many, less where the time is short. Before all come as many as take up
+ * `settle_ns` (a quarter of the most there are). */
+void timeline_make(timeline *t, int64_t settle_ns, int64_t daemon_ns, bool floor, bool laden, uint32_t pairs);
 
 /* The slice that time `ns` (from the run's begin) falls into; `slices` behind the last. */
 uint32_t timeline_slice_at(const timeline *t, int64_t ns);

@@ -26,7 +26,7 @@ connections=4096
 
 # start: a daemon of our own; sets `daemon` and `address`.
 start() {
-    awtd_options="--max-connections $connections --log-level warn"
+    awtd_options="--max-connections $connections --max-forests 4096 --log-level warn"
     . tests/start_awtd.sh
     [ -n "$address" ] && return
     echo "awtd does not listen:"
@@ -157,12 +157,20 @@ if wanted 5; then
     wait "$saturating" 2>/dev/null
 fi
 
+# Processor seconds that programs of ours which have ended took.
+spent() {
+    times >"$work/times"
+    awk 'NR == 2 { for (i = 1; i <= 2; i++) { split($i, t, "m"); s += 60 * t[1] + t[2] } printf "%.2f", s }' "$work/times"
+}
+
 # How many heads of the long style run freely: more each time, until frames stay away: less than 97 % of 60 a second from
-# those that move and 4 from those at rest (more come while these settle). Sets `held`, and says what gave way first.
+# those that move and 4 from those at rest, which have fallen asleep before anything is counted. Sets `held`, and `viewers`
+# to the processors that whoever watched so many took; says what gave way first. Usage: heads SHARE CLIP SETTLE, s.
 heads() {
-    held=0
-    for count in 4 8 12 16 24 32 48 64 96 128 192 256; do
-        "$build/awt-load" --connect "$address" --token-file "$work/state/token" --quiet --duration 5 --scenario stream --free \
+    held=0 viewers=0
+    for count in 4 8 12 16 20 24 32 48 64 96 128 192 256 384 512; do
+        before=$(spent)
+        "$build/awt-load" --connect "$address" --token-file "$work/state/token" --quiet --settle "$3" --duration 5 --scenario stream --free \
             --strands 10000 --rate 60 --forests $count --connections $count --moving "$1" --motion "$2" >"$work/heads" 2>&1
         came=$(awk -v moving="$1" -v count=$count 'index($0, "awtd ") == 1 && $2 > 0 {
             moves = int(moving * count) + (moving * count > int(moving * count))
@@ -175,6 +183,7 @@ heads() {
         echo "$count heads, $1 moving ($2): $(awk -v s="$came" 'BEGIN { printf "%.1f", 100 * s }') % of the frames came, p99 $(figure heads awtd p99) us after what they show; $(sed -n 's/.*frames left out/left out/p' "$work/heads")"
         awk -v s="$came" 'BEGIN { exit s >= 0.97 }' && return
         held=$count
+        viewers=$(awk -v s="$(($3 + 5))" -v a="$before" -v b="$(spent)" 'BEGIN { printf "%.2f", (b - a) / s }')
     done
 }
 
@@ -185,12 +194,14 @@ if wanted 6; then
     cores=$(getconf _NPROCESSORS_ONLN)
     set -- $(awk '/^long / && /[|].*[|]/ { print $(NF - 2), $(NF - 1), $NF }' "$work/capacity")
     for share in 0 0.1 1; do
-        heads $share lean-forever
-        echo "long style, $share of the heads moving: $held held on $cores cores; the cost model says ${1:-?} a core"
+        settle=15
+        [ $share = 1 ] && settle=3
+        heads $share lean-forever $settle
+        echo "long style, $share of the heads moving: $held held on $cores cores, of which their viewers took $viewers; the cost model says ${1:-?} a core: $(awk -v a="${1:-0}" -v c="$cores" -v v="$viewers" 'BEGIN { printf "%d", a * (c - v) }')"
         [ $# -gt 0 ] && shift
     done
-    heads 1 jump
-    echo "all heads jumping at once: $held held on $cores cores"
+    heads 1 jump 3
+    echo "all heads jumping at once: $held held on $cores cores, of which their viewers took $viewers"
 fi
 
 stop

@@ -87,7 +87,7 @@ TEST(load_histogram_writes_percentiles_to_the_last_one)
 TEST(load_times_are_the_rate_asked_for_in_the_turns_of_each_side)
 {
     timeline t;
-    timeline_make(&t, INT64_C(10000000000), true, false, 0);
+    timeline_make(&t, 0, INT64_C(10000000000), true, false, 0);
     CHECK_INT(t.slices, 20);
     CHECK_INT(t.slice_ns, 1000000000);
     for (uint32_t s = 0; s < t.slices; s++) {
@@ -116,7 +116,7 @@ TEST(load_times_hold_for_slow_rates_and_long_and_short_runs)
     timeline t;
     int64_t due_ns;
     uint32_t slice, ticks = 0;
-    timeline_make(&t, INT64_C(10000000000), true, true, 0);
+    timeline_make(&t, 0, INT64_C(10000000000), true, true, 0);
     while (timeline_due(&t, LOAD_DAEMON, 0, INT64_C(4000000000), ticks, &due_ns, &slice)) {
         CHECK_INT(t.modes[slice], LOAD_LADEN);
         ticks++;
@@ -124,9 +124,14 @@ TEST(load_times_hold_for_slow_rates_and_long_and_short_runs)
     CHECK_INT(ticks, 3); /* after 0, 4 and 8 of 9 busy seconds */
     CHECK(!timeline_due(&t, LOAD_DAEMON, INT64_C(9000000000), 1, 0, &due_ns, &slice));
     CHECK(!timeline_due(&t, LOAD_DAEMON, 0, 1000, UINT64_MAX, &due_ns, &slice));
-    timeline_make(&t, INT64_C(86400000000000), true, false, 0);
+    timeline_make(&t, 0, INT64_C(86400000000000), true, false, 0);
     CHECK(t.slices <= TIMELINE_MAX_SLICES && t.slices * t.slice_ns > INT64_C(172000000000000));
-    timeline_make(&t, 400000000, false, false, 0);
+    timeline_make(&t, INT64_C(2500000000), INT64_C(10000000000), true, false, 0);
+    CHECK_INT(t.slices, 23);
+    CHECK_INT(t.modes[2], LOAD_SETTLE);
+    CHECK_INT(t.modes[3], LOAD_PLAIN);
+    CHECK_NEAR(timeline_busy_s(&t, LOAD_PLAIN), 9, 1e-9);
+    timeline_make(&t, 0, 400000000, false, false, 0);
     CHECK_INT(t.slices, 2);
     CHECK_INT(t.slice_ns, 200000000);
     CHECK(!timeline_due(&t, LOAD_BARE, 0, 1000, 0, &due_ns, &slice)); /* it has no turns */
@@ -137,11 +142,11 @@ TEST(load_pairs_change_their_order_each_time)
     timeline t;
     static const uint8_t expected[] = {LOAD_PLAIN, LOAD_FLOOR, LOAD_LADEN, LOAD_FLOOR,
                                        LOAD_LADEN, LOAD_FLOOR, LOAD_PLAIN, LOAD_FLOOR};
-    timeline_make(&t, INT64_C(20000000000), true, false, 10);
+    timeline_make(&t, 0, INT64_C(20000000000), true, false, 10);
     CHECK_INT(t.slices, 40);
     CHECK_BYTES(t.modes, expected, sizeof expected);
     CHECK_NEAR(timeline_busy_s(&t, LOAD_PLAIN), timeline_busy_s(&t, LOAD_LADEN), 0);
-    timeline_make(&t, INT64_C(20000000000), true, false, TIMELINE_MAX_SLICES);
+    timeline_make(&t, 0, INT64_C(20000000000), true, false, TIMELINE_MAX_SLICES);
     CHECK(t.slices <= TIMELINE_MAX_SLICES);
 }
 
@@ -152,7 +157,7 @@ TEST(load_book_compares_each_pair_of_slices_and_takes_the_median)
     book b;
     timeline t;
     static const int64_t laden_us[] = {110, 500, 90}; /* against 100 without: of all three the first is the median */
-    timeline_make(&t, 6000000000, true, false, 3);
+    timeline_make(&t, 0, 6000000000, true, false, 3);
     CHECK(book_init(&b, TIMELINE_MAX_SLICES));
     CHECK_NEAR(book_pair_ratio(&b, &t), 0, 0);
     CHECK_U64(book_mean_bytes(&b, LOAD_LADEN), 0);
