@@ -86,8 +86,9 @@ $(B)/engine_loop: $(call objects,$(SRC_loop)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-load: $(call objects,$(SRC_load)) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/awt-bench: $(call objects,$(SRC_bench)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/tests: $(call objects,$(SRC_unit) $(SRC_lent)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
-# The tests see what the heap is asked for, and can refuse it: the linker leads these calls to tests/unit/heap_seam.c.
-$(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_alloc posix_memalign free)
+# The tests see what the heap is asked for, and can refuse it, and what clocks are: the linker leads these calls to
+# tests/unit/heap_seam.c and clock_seam.c.
+$(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_alloc posix_memalign free clock_gettime time)
 # A bad line for the tests to put between client and daemon.
 $(B)/awt-relay: $(call objects,$(SRC_relay)) $(LIBAWT)
 # What reads bytes from outside, under libFuzzer: config=asan or, slower and keener, config=fuzz; CC=clang CXX=clang++

@@ -1,5 +1,6 @@
 /* clock.c: see clock.h. */
 #include "clock.h"
+#include "limits.h"
 
 #include <time.h>
 
@@ -19,6 +20,15 @@ int clock_poll_ms(int64_t now_us, int64_t until_us)
     }
     int64_t left_us = until_us - now_us;
     return left_us <= 0 ? 0 : left_us >= LONGEST_POLL_US ? LONGEST_POLL_US / 1000 : (int)((left_us + 999) / 1000);
+}
+
+bool clock_is_over(int64_t *since_us, int64_t patience_us, int64_t now_us)
+{
+    const int64_t late_us = now_us - *since_us - patience_us;
+    if (late_us > LIMIT_SLEPT_US) {
+        *since_us = now_us;
+    }
+    return late_us >= 0 && late_us <= LIMIT_SLEPT_US;
 }
 
 uint32_t clock_between_us(int64_t from_us, int64_t to_us)

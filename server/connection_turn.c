@@ -1,6 +1,7 @@
 /* connection_turn.c: see connection.h: a connection's turn. Bytes are received without the lock; all else is done
  * under it. */
 #include "connection_parts.h"
+#include "clock.h"
 #include "metrics.h"
 #include "net.h"
 #include "protocol.h"
@@ -109,9 +110,9 @@ static void check_clock(connection *c)
     int64_t now_us = connection_now_us(c);
     if (c->lingering_us && now_us >= c->lingering_us + LIMIT_LINGER_US) {
         connection_drop(c, "the conversation ended");
-    } else if (c->out.first && now_us >= c->progress_us + LIMIT_WRITE_STALL_US) {
+    } else if (c->out.first && clock_is_over(&c->progress_us, LIMIT_WRITE_STALL_US, now_us)) {
         connection_drop(c, "the peer does not read");
-    } else if (c->talk.state < SESSION_OPEN && now_us >= c->opened_us + LIMIT_HANDSHAKE_US) {
+    } else if (c->talk.state < SESSION_OPEN && clock_is_over(&c->opened_us, LIMIT_HANDSHAKE_US, now_us)) {
         session_error(&c->talk, 0, 0, PROTO_ERROR_TIMED_OUT, "no HELLO and AUTH within %d s",
                       (int)(LIMIT_HANDSHAKE_US / 1000000));
     }

@@ -83,11 +83,12 @@ enum { LIMIT_BUSY_RETRY_MS = 100, LIMIT_FULL_RETRY_MS = 2000 }; /* ERROR BUSY's 
 /* Times, microseconds. */
 #define LIMIT_HANDSHAKE_US INT64_C(10000000)   /* from accept until the client is in */
 #define LIMIT_WRITE_STALL_US INT64_C(30000000) /* a peer that takes nothing for so long is let go */
-#define LIMIT_FOREST_LOOK_US INT64_C(1000000)  /* from one look for forests that nobody has open to the next */
-#define LIMIT_LINGER_US INT64_C(1000000)       /* after the last byte out, for the peer to close first */
-#define LIMIT_STEP_US INT64_C(10000)           /* a request for a step or a look is late after that */
-#define LIMIT_IDLE_US INT64_C(2000000)         /* after so long a connection is idle */
-#define LIMIT_NEWCOMER_US INT64_C(250000)      /* and after so long, if it has never been busy */
+#define LIMIT_SLEPT_US INT64_C(2000000) /* what is found overdue by more was slept through: it has its time anew */
+#define LIMIT_FOREST_LOOK_US INT64_C(1000000) /* from one look for forests that nobody has open to the next */
+#define LIMIT_LINGER_US INT64_C(1000000)      /* after the last byte out, for the peer to close first */
+#define LIMIT_STEP_US INT64_C(10000)          /* a request for a step or a look is late after that */
+#define LIMIT_IDLE_US INT64_C(2000000)        /* after so long a connection is idle */
+#define LIMIT_NEWCOMER_US INT64_C(250000)     /* and after so long, if it has never been busy */
 #define LIMIT_FREE_BEHIND_US \
     INT64_C(50000) /* simulated, by which a free-running forest may lag before time is dropped */
 #define LIMIT_FREE_UNSEEN_US INT64_C(200000)     /* from one job of a free-running forest to the next: nobody looks; */

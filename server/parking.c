@@ -76,8 +76,12 @@ int64_t parking_due_us(const parking *p)
     return p->first ? p->first->until_us : INT64_MAX;
 }
 
-void parking_expire(parking *p, const registry *forests, int64_t now_us)
+void parking_expire(parking *p, const registry *forests, int64_t now_us, int64_t grace_us)
 {
+    const bool slept = p->first && now_us - p->first->until_us > LIMIT_SLEPT_US;
+    for (parked *left = slept ? p->first : NULL; left; left = left->next) {
+        left->until_us = now_us + grace_us;
+    }
     while (p->first && now_us >= p->first->until_us) {
         give_up_first(p, forests, now_us);
     }

@@ -28,7 +28,7 @@ bool parking_take(parking *p, const uint8_t token[PARKING_TOKEN_SIZE], holdings 
 
 /* When the next one's time is over; INT64_MAX: nobody is parked. */
 int64_t parking_due_us(const parking *p);
-/* Gives up those whose time is over. */
-void parking_expire(parking *p, const registry *forests, int64_t now_us);
+/* Gives up those whose time is over; where that was slept through (LIMIT_SLEPT_US), all have `grace_us` anew. */
+void parking_expire(parking *p, const registry *forests, int64_t now_us, int64_t grace_us);
 
 #endif

@@ -25,7 +25,13 @@ bool session_init(session *s, service *shared, const session_sink *sink, const c
     return true;
 }
 
-/* Whoever was cut off may come back for what it held; whoever said BYE, or was sent away, has given it up. */
+/* Whoever was cut off, or fell silent, may come back for what it held; whoever said BYE, or was sent away, has given it
+ * up. */
+bool session_is_resumable(const session *s)
+{
+    return s->state == SESSION_OPEN || s->vanished;
+}
+
 static void leave_holdings(session *s)
 {
     const service_options *options = &s->shared->options;
@@ -34,7 +40,7 @@ static void leave_holdings(session *s)
     if (driven > 0) {
         log_write(LOG_INFO, "forests live on", "peer=%s forests=%lu", s->peer, (unsigned long)driven);
     }
-    if (s->state == SESSION_OPEN && options->resume_grace_us > 0 && !holdings_are_none(&s->holds)) {
+    if (session_is_resumable(s) && options->resume_grace_us > 0 && !holdings_are_none(&s->holds)) {
         parking_leave(&s->shared->parked, s->token, &s->holds, &s->shared->forests, now_us,
                       now_us + options->resume_grace_us);
         service_ring_door(s->shared);

@@ -43,7 +43,8 @@ typedef struct session {
     uint8_t nonce[AUTH_NONCE_SIZE];
     uint8_t token[PARKING_TOKEN_SIZE]; /* what RESUME names it by */
     int64_t heard_us;                  /* when the last message came */
-    bool pinged;                       /* and has been asked whether it is there since */
+    int64_t pinged_us;                 /* when it was asked since whether it is there; 0: it was not */
+    bool vanished;                     /* it is closing because its client said nothing any more */
     uint32_t pending;                  /* requests that wait for a worker */
     promise *promised;                 /* answers with a deadline */
     uint32_t last_write_us;            /* written by whoever is behind the sink: see FRAME */
@@ -58,6 +59,9 @@ typedef struct session {
 bool session_init(session *s, service *shared, const session_sink *sink, const char *peer);
 /* Ends its subscriptions; its forests live on. What it holds is parked if it was cut off. Accepts a zeroed one. */
 void session_fini(session *s);
+
+/* What it holds is for who comes back with its token. */
+bool session_is_resumable(const session *s);
 
 /* The session that asked; NULL: it is gone. */
 session *session_find(const service *shared, origin from);

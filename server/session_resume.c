@@ -11,8 +11,7 @@ static session *find_alive(const session *s, const uint8_t token[PARKING_TOKEN_S
     session *found = NULL;
     for (uint32_t i = 0; i < sessions->capacity; i++) {
         session *other = handle_at(sessions, i);
-        if (other && other != s && other->state == SESSION_OPEN &&
-            auth_equal(other->token, token, PARKING_TOKEN_SIZE)) {
+        if (other && other != s && session_is_resumable(other) && auth_equal(other->token, token, PARKING_TOKEN_SIZE)) {
             found = other;
         }
     }

@@ -1,6 +1,7 @@
 /* session_stream.c: what a session sends without being asked at that moment: frames of its subscriptions, PING to a
  * client that is silent, and what was promised by a deadline. */
 #include "session.h"
+#include "clock.h"
 #include "metrics.h"
 #include "turns.h"
 
@@ -124,11 +125,11 @@ static bool is_watched(const session *s)
     return s->state == SESSION_OPEN && s->shared->options.quiet_us > 0 && s->pending == 0;
 }
 
-/* It is asked after a third of the time that it may be silent. */
+/* It is asked after a third of the time that it may be silent, and has the rest to answer. */
 static int64_t quiet_due_us(const session *s)
 {
-    const int64_t quiet_us = s->shared->options.quiet_us;
-    return is_watched(s) ? s->heard_us + (s->pinged ? quiet_us : quiet_us / 3) : INT64_MAX;
+    const int64_t quiet_us = s->shared->options.quiet_us, ask_us = quiet_us / 3;
+    return !is_watched(s) ? INT64_MAX : s->pinged_us ? s->pinged_us + quiet_us - ask_us : s->heard_us + ask_us;
 }
 
 static void watch(session *s, int64_t now_us)
@@ -136,21 +137,23 @@ static void watch(session *s, int64_t now_us)
     if (now_us < quiet_due_us(s)) {
         return;
     }
-    if (s->pinged) {
+    const int64_t quiet_us = s->shared->options.quiet_us;
+    if (s->pinged_us && clock_is_over(&s->pinged_us, quiet_us - quiet_us / 3, now_us)) {
+        s->vanished = true;
         session_error(s, 0, 0, PROTO_ERROR_TIMED_OUT, "nothing came for %lld s, not even an answer to PING",
-                      (long long)(s->shared->options.quiet_us / 1000000));
+                      (long long)(quiet_us / 1000000));
         return;
     }
     proto_message ping = {.type = PROTO_PING};
     ping.as.ping.sent_us = now_us;
-    s->pinged = true;
+    s->pinged_us = now_us;
     session_send(s, &ping);
 }
 
 void session_heard(session *s)
 {
     s->heard_us = s->shared->options.clock_us();
-    s->pinged = false;
+    s->pinged_us = 0;
     if (s->who) {
         account_count_message(s->who, s->heard_us);
     }

@@ -25,16 +25,19 @@ static void end_forest(service *shared, resident *r)
     forest_inputs_free(registry_destroy(&shared->forests, r)); /* whoever waited for it is gone */
 }
 
-/* Forests are looked at so often that each ends not much later than it should. */
+/* Forests are looked at so often that each ends not much later than it should. Those who slept through a look could not
+ * open any meanwhile. */
 static void end_left_forests(service *shared, int64_t now_us)
 {
     const int64_t grace_us = shared->options.forest_grace_us;
     if (now_us < shared->forests_due_us) {
         return;
     }
+    const bool slept = now_us - shared->forests_due_us > LIMIT_SLEPT_US;
     shared->forests_due_us = now_us + LIMIT_FOREST_LOOK_US;
     for (resident *r = shared->forests.first, *next; r; r = next) {
         next = r->next;
+        r->left_us = slept ? now_us : r->left_us;
         if (r->ready && !r->doomed && r->holders == 0 && now_us - r->left_us >= grace_us) {
             end_forest(shared, r);
         }
@@ -94,7 +97,7 @@ static void keep_round(service *shared, int64_t now_us)
 void upkeep_do(service *shared, int64_t now_us)
 {
     making_tell(shared, now_us);
-    parking_expire(&shared->parked, &shared->forests, now_us);
+    parking_expire(&shared->parked, &shared->forests, now_us, shared->options.resume_grace_us);
     end_left_forests(shared, now_us);
     keep_round(shared, now_us);
 }

@@ -16,8 +16,9 @@ static void begin(service *shared)
 /* Time passes, and what is due is done. */
 static void wait_us(service *shared, int64_t us)
 {
-    fake_now_us += us;
-    upkeep_do(shared, fake_now_us);
+    for (const int64_t end_us = fake_now_us + us; fake_now_us < end_us; upkeep_do(shared, fake_now_us)) {
+        fake_now_us += end_us - fake_now_us < LIMIT_FOREST_LOOK_US ? end_us - fake_now_us : LIMIT_FOREST_LOOK_US;
+    }
 }
 
 static proto_message resume_of(const uint8_t token[PARKING_TOKEN_SIZE])
@@ -222,10 +223,41 @@ TEST(server_client_that_stays_silent_is_asked_and_then_let_go)
     session_tick(&client->talk);
     fake_expect(client, PROTO_PING);
     CHECK_INT(session_due_us(&client->talk), fake_now_us + QUIET_US - QUIET_US / 3);
-    fake_now_us += QUIET_US;
+    fake_now_us += QUIET_US - QUIET_US / 3;
     session_tick(&client->talk);
     fake_expect_error(client, PROTO_ERROR_TIMED_OUT);
     CHECK_INT(client->talk.state, SESSION_CLOSING);
     fake_client_destroy(client);
+    service_fini(&shared);
+}
+
+TEST(server_session_of_a_client_that_fell_silent_can_be_resumed)
+{
+    service shared;
+    begin(&shared);
+    shared.options.quiet_us = QUIET_US;
+    for (int parked = 0; parked < 2; parked++) { /* while its connection is being closed, and afterwards */
+        fake_client *client = fake_client_open(&shared), *again = NULL;
+        const struct proto_create_reply made = fake_make_forest(&shared, client, (uint64_t)parked);
+        proto_message resume = {.type = PROTO_RESUME, .request = 30};
+        memcpy(resume.as.resume.session, client->talk.token, sizeof resume.as.resume.session);
+        fake_now_us += QUIET_US / 3;
+        session_tick(&client->talk);
+        fake_now_us += QUIET_US - QUIET_US / 3;
+        session_tick(&client->talk);
+        CHECK_INT(client->talk.state, SESSION_CLOSING);
+        if (parked) {
+            fake_client_destroy(client);
+        }
+        again = fake_client_open(&shared);
+        fake_send(again, &resume);
+        const struct proto_resume_reply *reply = &fake_expect(again, PROTO_RESUME_REPLY)->as.resume_reply;
+        CHECK_INT(reply->forests.count, 1);
+        CHECK_U64(reply->forests.items[0].forest, made.forest);
+        fake_client_destroy(again);
+        if (!parked) {
+            fake_client_destroy(client);
+        }
+    }
     service_fini(&shared);
 }

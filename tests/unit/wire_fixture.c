@@ -12,12 +12,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-enum { GRACE_US = 5000000, SETTLED = 10000 /* turns after which nothing may move any more */ };
+enum { BEGIN_US = 1000000, GRACE_US = 5000000, SETTLED = 10000 /* turns after which nothing may move any more */ };
 
 bool wire_begin(wire *w, uint32_t max_forests)
 {
     w->homes = (homes){0};
-    fake_now_us = 1000000;
+    fake_now_us = BEGIN_US;
     for (int i = 0; i < WIRE_CLIENTS; i++) {
         w->clients[i].served = NULL;
         w->clients[i].fd = -1;
@@ -42,6 +42,7 @@ void wire_end(wire *w)
     wire_pass(w, GRACE_US); /* nobody comes back */
     service_fini(&w->shared);
     homes_fini(&w->homes);
+    fake_now_us = BEGIN_US;
 }
 
 /* ---- the clients' ends ------------------------------------------------------------------------------------------- */
@@ -64,7 +65,7 @@ bool wire_connect(wire *w, int i, void (*hear)(void *context, const proto_messag
     c->hear = hear;
     c->context = context;
     c->size = 0;
-    c->deaf = false;
+    c->idle = c->deaf = false;
     service_lock(&w->shared);
     connection_enter(c->served, homes_hot(&w->homes));
     service_unlock(&w->shared);
@@ -134,20 +135,33 @@ static wire_client *client_of(wire *w, const connection *served)
     return NULL;
 }
 
-/* As a loop does. Nobody moves to where the idle live. */
+/* As a loop does. */
 static void give_turn(wire *w, connection *c, int revents)
 {
+    wire_client *client = client_of(w, c);
     connection_turn(c, revents);
-    if (connection_fate_of(c) != CONNECTION_ENDS) {
-        return;
-    }
+    const connection_fate fate = connection_fate_of(c);
     service_lock(&w->shared);
-    const bool closed = connection_close(c);
+    const bool leaves = fate == CONNECTION_MOVES && connection_leave(c);
+    const bool closed = fate == CONNECTION_ENDS && connection_close(c);
+    if (leaves) {
+        client->idle = !client->idle;
+        connection_enter(c, client->idle ? homes_cold(&w->homes) : homes_hot(&w->homes));
+    }
     service_unlock(&w->shared);
     if (closed) {
-        client_of(w, c)->served = NULL;
+        client->served = NULL;
         connection_destroy(c);
     }
+}
+
+static bool give_told_turns(wire *w, home *h)
+{
+    bool moved = false;
+    for (connection *c; (c = home_take(h)) != NULL; moved = true) {
+        give_turn(w, c, 0);
+    }
+    return moved;
 }
 
 static bool give_turns(wire *w)
@@ -164,10 +178,8 @@ static bool give_turns(wire *w)
             moved = true;
         }
     }
-    for (connection *c; (c = home_take(homes_hot(&w->homes))) != NULL; moved = true) {
-        give_turn(w, c, 0);
-    }
-    return moved;
+    moved = give_told_turns(w, homes_hot(&w->homes)) || moved;
+    return give_told_turns(w, homes_cold(&w->homes)) || moved;
 }
 
 /* As a worker does. */

@@ -10,6 +10,7 @@ enum { WIRE_CLIENTS = 4, WIRE_BYTES = 4 << 20 /* of one message at most */ };
 
 typedef struct wire_client {
     connection *served; /* the daemon's end; NULL: it is gone */
+    bool idle;          /* it lives in the cold home */
     int fd;             /* the client's; -1: it is gone */
     bool deaf;          /* reads nothing */
     void (*hear)(void *context, const proto_message *message);
