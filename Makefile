@@ -93,7 +93,7 @@ $(B)/tests: WRAP := $(addprefix -Wl$(,)--wrap=,malloc calloc realloc aligned_all
 $(B)/awt-relay: $(call objects,$(SRC_relay)) $(LIBAWT)
 # What reads bytes from outside, under libFuzzer: config=asan or, slower and keener, config=fuzz; CC=clang CXX=clang++
 # (tests/fuzz/suite.sh and tests/soak.sh run it).
-$(B)/fuzz: $(call objects,$(SRC_fuzz) $(addprefix tests/unit/,proto_fill.c server_fixture.c interleaving.c interleaving_actor.c)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
+$(B)/fuzz: $(call objects,$(SRC_fuzz) $(addprefix tests/unit/,proto_fill.c server_fixture.c interleaving.c interleaving_actor.c interleaving_opens.c interleaving_says.c hair_file.c)) $(LIBSERVER) $(LIBCLIENT) $(LIBAWT) $(LIBPROTO)
 $(B)/fuzz: WRAP := -fsanitize=fuzzer
 $(PROGRAMS) $(B)/tests $(B)/awt-relay $(B)/fuzz:
 	@echo "  LD   $@"

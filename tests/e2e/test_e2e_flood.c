@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { STEPS = 40, ROUNDS = 3, GROWTH_KIB = 32 * 1024, LEAST_FLOOD = 1 << 20 /* bytes */ };
+enum { STEPS = 40, ROUNDS = 3, GROWTH_KIB = 64 * 1024, LEAST_FLOOD = 1 << 20 /* bytes */ };
 
 /* What a flood is made of, and whether the answers are read. */
 typedef enum flood_kind { POSES_AND_STEPS, LOOKS_UNREAD, PINGS, PINGS_UNREAD, POSES_UNREAD, FLOODS } flood_kind;

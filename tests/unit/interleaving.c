@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-enum { ACTORS = 4, FORESTS_MOST = 4, END_TURNS = 200, GRACE_US = 500000, QUIET_US = 2000000 };
+enum { ACTORS = 4, FORESTS_MOST = 8, END_TURNS = 200, GRACE_US = 500000, QUIET_US = 2000000 };
 
 /* ---- decisions --------------------------------------------------------------------------------------------------- */
 

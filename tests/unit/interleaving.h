@@ -14,6 +14,7 @@ typedef struct interleaving {
     const char *broken; /* what did not hold; NULL: everything did */
     uint64_t hash;      /* of all that the daemon sent, to whom and in which order */
     uint32_t sent, answers, errors, frames, cuts;
+    uint32_t restored, many, clocks; /* of the answers, those to RESTORE, STEP_MANY and SET_CLOCK */
 } interleaving;
 
 /* So many decisions, taken from the seed. */

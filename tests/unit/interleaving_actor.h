@@ -12,7 +12,8 @@ enum {
     ACTOR_REQUESTS = 64,      /* that may be open; beyond, it says nothing new */
     ACTOR_WIRE = 256 * 1024,  /* bytes said that have not arrived */
     ACTOR_SUBSCRIPTIONS = 64, /* begun on one connection, ended ones too */
-    STAGE_FORESTS = 8         /* the last ones made, which all actors have heard of */
+    STAGE_FORESTS = 8,        /* the last ones made, which all actors have heard of */
+    STAGE_STATE = 64 * 1024   /* bytes of a forest's state */
 };
 
 typedef struct stage {
@@ -24,6 +25,8 @@ typedef struct stage {
     uint32_t motions;
     uint8_t token[PARKING_TOKEN_SIZE]; /* of the session that was cut off last */
     int64_t time_us;                   /* that was asked for last */
+    size_t state_size;                 /* of the state that was seen last, if it is not too large */
+    unsigned char state[STAGE_STATE];
     interleaving seen;
 } stage;
 
@@ -31,6 +34,7 @@ typedef struct stage {
 typedef struct open_request {
     uint64_t request;
     uint16_t type;
+    uint32_t answers; /* that are to come */
 } open_request;
 
 typedef struct begun_subscription {

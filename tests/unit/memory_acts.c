@@ -1,12 +1,12 @@
 /* memory_acts.c: see memory_acts.h. */
 #include "unit/memory_acts.h"
 
-#include "base/bytes.h"
+#include "unit/hair_file.h"
 #include "unit/server_fixture.h"
 
 #include <string.h>
 
-enum { STRANDS = 12, WISPS = 4, TOP_WISPS = 2, STEP_US = 10000, HAIR_SIZE = 128 + 1920 };
+enum { STRANDS = 12, WISPS = 4, TOP_WISPS = 2, STEP_US = 10000 };
 
 /* ---- small things ------------------------------------------------------------------------------------------------ */
 
@@ -206,46 +206,17 @@ static void do_restore(memory_scene *s)
     memcpy(t->drive_token, token, sizeof token);
 }
 
-/* A .hair file: strands that stand on a head of 0.1 m. */
-static void write_hair(unsigned char bytes[HAIR_SIZE])
-{
-    enum { LINES = 16, POINTS = 10 };
-    memset(bytes, 0, HAIR_SIZE);
-    memcpy(bytes, "HAIR", 4);
-    store_u32(bytes + 4, LINES);
-    store_u32(bytes + 8, LINES * POINTS);
-    store_u32(bytes + 12, 2);
-    store_u32(bytes + 16, POINTS - 1);
-    for (int i = 0; i < LINES * POINTS; i++) {
-        const float x = 0.02f * (float)(i / POINTS % 4) - 0.03f, z = 0.02f * (float)(i / POINTS / 4) - 0.03f;
-        const float out = 1 + 0.1f * (float)(i % POINTS);
-        store_f32(bytes + 128 + 12 * i, x * out);
-        store_f32(bytes + 132 + 12 * i, 0.09f * out);
-        store_f32(bytes + 136 + 12 * i, z * out);
-    }
-}
-
 static void do_upload(memory_scene *s)
 {
-    static const char hierarchy[] = "0,0\n0,0\n0,1\n0,1\n0,2\n0,2\n0,3\n0,3\n1,4\n1,4\n1,5\n1,5\n1,6\n1,6\n1,7\n1,7\n";
-    static unsigned char hair[HAIR_SIZE];
+    unsigned char hair[HAIR_FILE_SIZE];
     talker *t = s->victim;
     const uint64_t own = t->forest;
     uint8_t token[16];
     memcpy(token, t->drive_token, sizeof token);
-    write_hair(hair);
-    proto_message message = fake_create(1);
-    struct proto_create *c = &message.as.create;
-    c->source = RECIPE_FROM_UPLOAD;
-    c->upload = 2;
-    c->finest_wisps = c->top_wisps = 0;
-    c->scale = 1;
-    c->up = 1;
-    c->head_radius = 0.1;
-    c->own_hierarchy = 1;
-    c->hierarchy = 3;
-    if (talker_upload(t, 2, hair, sizeof hair) && talker_upload(t, 3, hierarchy, sizeof hierarchy - 1) &&
-        talker_ask(t, message)) {
+    hair_file_write(hair);
+    const proto_message message = hair_file_create(2, 3);
+    if (talker_upload(t, 2, hair, sizeof hair) &&
+        talker_upload(t, 3, hair_file_hierarchy, strlen(hair_file_hierarchy)) && talker_ask(t, message)) {
         destroy(t, t->forest);
     }
     t->forest = own;
