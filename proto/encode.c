@@ -10,26 +10,55 @@ enum { HELLO_LENGTH_AT = PROTO_HEADER_SIZE + 6 }; /* of HELLO's own `length`, be
 
 typedef struct writer {
     unsigned char *bytes; /* NULL: counting only */
-    size_t used;
+    size_t used, capacity;
+    size_t left_out;   /* bytes of blobs, with `without_tail` */
     bool without_tail; /* leave out a blob's bytes */
-    bool refused;      /* a text, blob or list is over its limit */
+    bool refused;      /* a text, blob or list is over its limit, or there is no room; nothing more is written */
 } writer;
+
+/* Where the next `size` bytes go; NULL: they are only counted, or there is no room. */
+static unsigned char *advance(writer *w, size_t size)
+{
+    if (w->bytes && (w->refused || size > w->capacity - w->used)) {
+        w->refused = true;
+        return NULL;
+    }
+    unsigned char *at = w->bytes ? w->bytes + w->used : NULL;
+    w->used += size;
+    return at;
+}
 
 static void write_bytes(writer *w, const void *bytes, size_t size)
 {
-    if (w->bytes && size > 0) {
-        memcpy(w->bytes + w->used, bytes, size);
+    unsigned char *at = advance(w, size);
+    if (at && size > 0) {
+        memcpy(at, bytes, size);
     }
-    w->used += size;
 }
 
 static void write_integer(writer *w, uint64_t value, size_t width)
 {
-    unsigned char bytes[8];
-    for (size_t i = 0; i < width; i++) {
-        bytes[i] = (unsigned char)(value >> (8 * i));
+    unsigned char *at = advance(w, width);
+    if (!at) {
+        return;
     }
-    write_bytes(w, bytes, width);
+    switch (width) { /* of what they store at once compilers make one instruction */
+    case 8:
+        at[7] = (unsigned char)(value >> 56);
+        at[6] = (unsigned char)(value >> 48);
+        at[5] = (unsigned char)(value >> 40);
+        at[4] = (unsigned char)(value >> 32);
+        /* fall through */
+    case 4:
+        at[3] = (unsigned char)(value >> 24);
+        at[2] = (unsigned char)(value >> 16);
+        /* fall through */
+    case 2:
+        at[1] = (unsigned char)(value >> 8);
+        /* fall through */
+    default:
+        at[0] = (unsigned char)value;
+    }
 }
 
 static void write_f64(writer *w, double value)
@@ -119,7 +148,9 @@ static void write_field(writer *w, const proto_field *field, const void *object)
     }
     case PROTO_KIND_blob: {
         const proto_blob *blob = member;
-        if (write_length(w, field, blob->length) && !w->without_tail) {
+        if (write_length(w, field, blob->length) && w->without_tail) {
+            w->left_out += blob->length;
+        } else if (!w->refused) {
             write_bytes(w, blob->bytes, blob->length);
         }
         break;
@@ -137,47 +168,50 @@ static void write_fields(writer *w, const proto_layout *layout, const void *obje
     }
 }
 
-/* Header and payload of `length` bytes. HELLO's own `length` is known only here: whatever the caller put there, the
- * truth goes out. */
-static void write_message(writer *w, const proto_layout *layout, const proto_message *message, size_t length)
+/* Header and payload. HELLO's own `length`, like the header's, is known only behind it: whatever the caller put there,
+ * the truth goes out. False: it cannot be written. */
+static bool write_message(writer *w, const proto_message *message)
 {
-    write_integer(w, length, 4);
+    const proto_layout *layout = proto_layout_of(message->type);
+    if (!layout) {
+        return false;
+    }
+    write_integer(w, 0, 4);
     write_integer(w, message->type, 2);
     write_integer(w, message->flags, 2);
     write_integer(w, message->request, 8);
     write_fields(w, layout, &message->as);
-    if (message->type == PROTO_HELLO && w->bytes) {
-        writer patch = {.bytes = w->bytes + HELLO_LENGTH_AT};
+    if (w->refused || !w->bytes) {
+        return !w->refused;
+    }
+    const size_t length = w->used + w->left_out - PROTO_HEADER_SIZE;
+    writer patch = {.bytes = w->bytes, .capacity = w->used};
+    write_integer(&patch, length, 4);
+    if (message->type == PROTO_HELLO) {
+        patch.used = HELLO_LENGTH_AT;
         write_integer(&patch, length, 2);
     }
-}
-
-/* The least room for what proto_encode or, without the tail, proto_encode_head writes; 0: it cannot be encoded. */
-static size_t count_message(const proto_message *message, bool without_tail)
-{
-    const proto_layout *layout = proto_layout_of(message->type);
-    writer counter = {.without_tail = without_tail};
-    if (layout) {
-        write_message(&counter, layout, message, 0);
-    }
-    return counter.refused ? 0 : counter.used;
+    return true;
 }
 
 static size_t encode(const proto_message *message, unsigned char *bytes, size_t capacity, bool without_tail)
 {
-    size_t whole = count_message(message, false);
-    size_t room = without_tail ? count_message(message, true) : whole;
-    if (room == 0 || room > capacity) {
-        return 0;
-    }
-    writer w = {.bytes = bytes, .without_tail = without_tail};
-    write_message(&w, proto_layout_of(message->type), message, whole - PROTO_HEADER_SIZE);
-    return w.used;
+    writer w = {.bytes = bytes, .capacity = capacity, .without_tail = without_tail};
+    return write_message(&w, message) ? w.used : 0;
 }
 
 size_t proto_encoded_size(const proto_message *message)
 {
-    return count_message(message, false);
+    return encode(message, NULL, 0, false);
+}
+
+void proto_begin(proto_message *message, uint16_t type)
+{
+    const proto_layout *layout = proto_layout_of(type);
+    message->type = type;
+    message->flags = 0;
+    message->request = 0;
+    memset(&message->as, 0, layout ? layout->size : sizeof message->as);
 }
 
 size_t proto_encode(const proto_message *message, unsigned char *bytes, size_t capacity)

@@ -123,10 +123,15 @@ const char *proto_type_name(uint16_t type);
  * (may be NULL) then names the field. */
 int proto_decode(const proto_header *header, const unsigned char *payload, proto_message *out, const char **where);
 
+/* Begins a message of that type: all its own fields are 0. The room of longer messages (a list has 12 KB) is left as it
+ * is, where an initialiser would fill it. */
+void proto_begin(proto_message *message, uint16_t type);
+
 /* Bytes that proto_encode writes for it, header included; 0 where it cannot be encoded (a text or list over its limit).
  */
 size_t proto_encoded_size(const proto_message *message);
-/* Writes header and payload into `bytes`, of which there are `capacity`. The bytes written; 0: they do not fit. */
+/* Writes header and payload into `bytes`, of which there are `capacity`. The bytes written; 0: they do not fit (and
+ * what stands in `bytes` then is nothing). */
 size_t proto_encode(const proto_message *message, unsigned char *bytes, size_t capacity);
 
 /* As proto_encode, for a message whose last field is a blob, but without the blob's bytes: the caller sends these after

@@ -90,21 +90,22 @@ const view *picture_view(const picture *p, view_name name)
 
 void picture_message(const picture *p, const view *v, const delivery *to, proto_message *out)
 {
-    *out = (proto_message){.request = to->request};
     const proto_blob bytes = {.bytes = v->glb.bytes, .length = (uint32_t)v->glb.size};
-    if (v->name.form == PICTURE_BINDING) {
-        out->type = PROTO_BINDING_REPLY;
+    const int type = v->name.form == PICTURE_BINDING ? PROTO_BINDING_REPLY
+                     : v->name.form == PICTURE_STATE ? PROTO_SNAPSHOT_REPLY
+                                                     : PROTO_FRAME;
+    proto_begin(out, (uint16_t)type);
+    out->request = to->request;
+    if (type == PROTO_BINDING_REPLY) {
         out->as.binding_reply = (struct proto_binding_reply){.forest = p->figures.forest, .binding = bytes};
         return;
     }
-    if (v->name.form == PICTURE_STATE) {
-        out->type = PROTO_SNAPSHOT_REPLY;
+    if (type == PROTO_SNAPSHOT_REPLY) {
         out->as.snapshot_reply = (struct proto_snapshot_reply){
             .forest = p->figures.forest, .time_us = p->figures.time_us, .hash = p->state_hash, .state = bytes};
         return;
     }
     const frame_form *f = form_at(v->name.form);
-    out->type = PROTO_FRAME;
     out->as.frame = p->figures;
     out->as.frame.kind = f->kind;
     out->as.frame.level = f->level;

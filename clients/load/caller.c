@@ -108,7 +108,8 @@ uint64_t caller_attach(caller *c, const uint8_t token[16])
 
 uint64_t caller_query(caller *c, uint64_t forest)
 {
-    proto_message query = {.type = PROTO_QUERY};
+    proto_message query;
+    proto_begin(&query, PROTO_QUERY);
     query.as.query.forest = forest;
     query.as.query.latest = 1;
     query.as.query.kind = c->m.run->plan->kind;

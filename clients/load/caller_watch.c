@@ -46,9 +46,10 @@ static void driver_due(member *m, uint32_t slice, int64_t due_ns, int64_t now_ns
 {
     caller *c = (caller *)m;
     load_heads *heads = &m->run->heads;
-    proto_message move, query = {.type = PROTO_QUERY};
+    proto_message move, query;
     book_sent(&m->run->book, member_mode(m, slice), now_ns - due_ns, c->viewers);
     c->step++;
+    proto_begin(&query, PROTO_QUERY);
     heads_fill_motion(heads, c->head, c->step, heads_time_us(heads, c->step), &move);
     query.as.query.forest = move.as.motion.forest;
     query.as.query.time_us = move.as.motion.time_us;
@@ -176,7 +177,8 @@ static void viewer_give_credit(caller *c, const struct proto_frame *frame)
     if (!p->deltas && p->credit >= VIEWER_LARGE_WINDOW && 2 * c->spent < p->credit) {
         return;
     }
-    proto_message credit = {.type = PROTO_CREDIT};
+    proto_message credit;
+    proto_begin(&credit, PROTO_CREDIT);
     credit.as.credit.subscription = c->subscription;
     credit.as.credit.frames = c->spent;
     credit.as.credit.have = frame->sequence;

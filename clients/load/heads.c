@@ -51,7 +51,7 @@ void heads_fill_motion(const load_heads *h, uint32_t head, uint64_t number, int6
     if (h->heads[head].still) {
         sample.head = sample.body = rest;
     }
-    *out = (proto_message){.type = PROTO_MOTION};
+    proto_begin(out, PROTO_MOTION);
     out->as.motion.forest = h->heads[head].forest;
     out->as.motion.epoch = 1;
     out->as.motion.sequence = (uint32_t)number;

@@ -71,8 +71,8 @@ TEST(proto_head_leaves_out_nothing_but_the_tail)
         size_t tail_size = tail ? tail->length : 0;
         size_t size = proto_encode(&message, whole, sizeof whole);
         CHECK(size > 0);
-        CHECK_INT(proto_encode_head(&message, head, size - tail_size), size - tail_size);
         CHECK_INT(proto_encode_head(&message, head, size - tail_size - 1), 0);
+        CHECK_INT(proto_encode_head(&message, head, size - tail_size), size - tail_size);
         CHECK_BYTES(head, whole, size - tail_size);
         if (tail) {
             CHECK_BYTES(whole + size - tail_size, tail->bytes, tail_size);
