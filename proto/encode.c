@@ -17,7 +17,7 @@ typedef struct writer {
 } writer;
 
 /* Where the next `size` bytes go; NULL: they are only counted, or there is no room. */
-static unsigned char *advance(writer *w, size_t size)
+static inline unsigned char *advance(writer *w, size_t size)
 {
     if (w->bytes && (w->refused || size > w->capacity - w->used)) {
         w->refused = true;
@@ -36,7 +36,7 @@ static void write_bytes(writer *w, const void *bytes, size_t size)
     }
 }
 
-static void write_integer(writer *w, uint64_t value, size_t width)
+static inline void write_integer(writer *w, uint64_t value, size_t width)
 {
     unsigned char *at = advance(w, width);
     if (!at) {

@@ -52,6 +52,7 @@ typedef struct session {
     holdings holds;
     uint64_t subscription_serial;
     uint32_t subscription_next;  /* whose turn it is */
+    uint32_t subscription_top;   /* places from this on were never taken */
     subscription *subscriptions; /* [LIMIT_SESSION_SUBSCRIPTIONS], heap; NULL: there was none yet */
 } session;
 

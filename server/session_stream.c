@@ -9,25 +9,21 @@
 
 /* ---- subscriptions ---------------------------------------------------------------------------------------------- */
 
-static uint32_t subscription_places(const session *s)
-{
-    return s->subscriptions ? LIMIT_SESSION_SUBSCRIPTIONS : 0;
-}
-
 void session_end_subscriptions(session *s)
 {
-    for (uint32_t i = 0; i < subscription_places(s); i++) {
+    for (uint32_t i = 0; i < s->subscription_top; i++) {
         if (s->subscriptions[i].handle) {
             subscription_end(&s->subscriptions[i]);
         }
     }
     free(s->subscriptions);
     s->subscriptions = NULL;
+    s->subscription_top = 0;
 }
 
 void session_end_subscriptions_on(session *s, uint64_t forest)
 {
-    for (uint32_t i = 0; i < subscription_places(s); i++) {
+    for (uint32_t i = 0; i < s->subscription_top; i++) {
         subscription *sub = &s->subscriptions[i];
         if (sub->handle && sub->forest->handle == forest) {
             subscription_end(sub);
@@ -40,8 +36,9 @@ subscription *session_subscription_place(session *s)
     if (!s->subscriptions) {
         s->subscriptions = calloc(LIMIT_SESSION_SUBSCRIPTIONS, sizeof *s->subscriptions);
     }
-    for (uint32_t i = 0; i < subscription_places(s); i++) {
+    for (uint32_t i = 0; s->subscriptions && i < LIMIT_SESSION_SUBSCRIPTIONS; i++) {
         if (s->subscriptions[i].handle == 0) {
+            s->subscription_top = i < s->subscription_top ? s->subscription_top : i + 1;
             return &s->subscriptions[i];
         }
     }
@@ -50,7 +47,7 @@ subscription *session_subscription_place(session *s)
 
 subscription *session_subscription(session *s, uint64_t handle)
 {
-    for (uint32_t i = 0; handle && i < subscription_places(s); i++) {
+    for (uint32_t i = 0; handle && i < s->subscription_top; i++) {
         if (s->subscriptions[i].handle == handle) {
             return &s->subscriptions[i];
         }
@@ -61,15 +58,15 @@ subscription *session_subscription(session *s, uint64_t handle)
 /* The next in turn that may send, with its view, so that no forest starves another on the same connection. */
 static subscription *next_due(session *s, int64_t now_us, const view **v)
 {
-    for (uint32_t n = 0; n < subscription_places(s); n++) {
-        uint32_t i = (s->subscription_next + n) % LIMIT_SESSION_SUBSCRIPTIONS;
+    for (uint32_t n = 0; n < s->subscription_top; n++) {
+        uint32_t i = (s->subscription_next + n) % s->subscription_top;
         subscription *sub = &s->subscriptions[i];
         if (!subscription_is_due(sub, now_us)) {
             continue;
         }
         *v = subscription_view(sub);
         if (*v) {
-            s->subscription_next = (i + 1) % LIMIT_SESSION_SUBSCRIPTIONS;
+            s->subscription_next = (i + 1) % s->subscription_top;
             return sub;
         }
         if (subscription_asks(sub)) {
@@ -110,7 +107,7 @@ void session_stream(session *s)
 static int64_t stream_due_us(const session *s)
 {
     int64_t due_us = INT64_MAX;
-    for (uint32_t i = 0; i < subscription_places(s); i++) {
+    for (uint32_t i = 0; i < s->subscription_top; i++) {
         const subscription *sub = &s->subscriptions[i];
         if (sub->handle && sub->waiting && sub->credit > 0 && sub->due_us < due_us && subscription_view(sub)) {
             due_us = sub->due_us;
