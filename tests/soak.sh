@@ -1,11 +1,12 @@
 #!/bin/sh
 # soak.sh: what takes longer than make test may, with the time that each part took: ten simulated minutes of every style under
 # the most violent motion there is, what has threads under TSan, the same bits from both compilers at every optimisation and on
-# another architecture, kills at any moment, no memory anywhere, minutes of a game's loop, and fuzzing of all that reads bytes
-# from outside. Its last line counts all.
+# another architecture, kills at any moment, no memory anywhere, load of all kinds under the sanitizers, minutes of a game's loop,
+# and fuzzing of all that reads bytes from outside. Its last line counts all.
 #
-# PARTS: these alone, of violence bits around minutes fuzz clang kills memory tsan.
-# AWT_DATA: where motion files are (else ../shared/data); SECONDS_SIMULATED, FUZZ_SECONDS (of each target): for a shorter run.
+# PARTS: these alone, of violence bits around minutes fuzz clang kills memory load tsan.
+# AWT_DATA: where motion files are (else ../shared/data); SECONDS_SIMULATED, FUZZ_SECONDS (of each target), LOAD_SECONDS (of each
+# scenario): for a shorter run.
 set -u
 cd "$(dirname "$0")/.."
 . tests/suites.sh
@@ -194,6 +195,14 @@ part_kills() {
     took "kills and interleavings"
 }
 
+part_load() {
+    build config=asan CC=clang CXX=clang++
+    suite "load of all kinds, ASan and UBSan" sh tests/sanitized_load.sh build/asan "${LOAD_SECONDS:-60}"
+    build config=tsan
+    suite "load of all kinds, TSan" sh tests/sanitized_load.sh build/tsan "${LOAD_SECONDS:-60}"
+    took "load under the sanitizers"
+}
+
 part_memory() {
     build config=asan CC=clang CXX=clang++
     AWT_ALLOCATIONS=1 suite "every allocation of the daemon failed once, ASan and UBSan" build/asan/tests without_memory
@@ -208,7 +217,7 @@ part_tsan() {
 
 build config=release
 took building
-for part in ${PARTS:-violence bits around minutes fuzz clang kills memory tsan}; do
+for part in ${PARTS:-violence bits around minutes fuzz clang kills memory load tsan}; do
     part_$part
 done
 finish
