@@ -192,13 +192,13 @@ unsigned awtsession_wanted(const awtsession *s)
 
 bool awtsession_pending(const awtsession *s)
 {
-    return s->loss_to_tell || (s->link && awtlink_pending(s->link));
+    return s->loss_to_tell || s->state == SESSION_LOST || (s->link && awtlink_pending(s->link));
 }
 
 int64_t awtsession_deadline_us(const awtsession *s)
 {
     if (!s->link) {
-        return s->state == SESSION_AWAY ? s->again_us : INT64_MAX;
+        return s->state == SESSION_AWAY ? s->again_us : s->now_us; /* awtsession_pump has to say that it is lost */
     }
     const int64_t link_us = awtlink_deadline_us(s->link), ping_us = ping_due_us(s);
     return link_us < ping_us ? link_us : ping_us;

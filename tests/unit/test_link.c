@@ -1,5 +1,5 @@
-/* test_link.c: links, which never block: many at once in one loop, over transports that give and take as little as they
- * like, and against daemons that lie. No test waits but in poll, and none has a thread but the scripted daemon's. */
+/* test_link.c: links, which never block: many at once in one loop, and over transports that give and take as little as
+ * they like. No test waits but in poll, and none has a thread but the scripted daemon's. */
 #include "check.h"
 #include "codec.h"
 #include "fake_daemon.h"
@@ -235,78 +235,4 @@ TEST(link_gives_up_the_handshake_at_its_deadline_by_the_callers_clock)
     CHECK(!awtlink_pump(link, 6000000, &error));
     CHECK_INT(error.code, AWTCLIENT_TIMEOUT);
     awtlink_close(link);
-}
-
-/* ---- liars -------------------------------------------------------------------------------------------------- */
-
-static void script_another_version(fake *self)
-{
-    proto_message welcome = {.type = PROTO_WELCOME};
-    welcome.as.welcome.version = PROTO_VERSION + 1;
-    if (fake_read(self)) {
-        script_send(self, &welcome);
-    }
-}
-
-static void script_wrong_length(fake *self)
-{
-    static const unsigned char frame[] = "\x03\0\0\0\x34\0\0\0\0\0\0\0\0\0\0\0\x01\x01"; /* a FRAME of 3 bytes */
-    if (fake_welcome(self, false)) {
-        fake_write(self, frame, sizeof frame);
-    }
-}
-
-static void script_endless_length(fake *self)
-{
-    static const unsigned char frame[] = "\xFF\xFF\xFF\xFF\x34\0\0\0\0\0\0\0\0\0\0\0\x01\x01";
-    if (fake_welcome(self, false)) {
-        fake_write(self, frame, sizeof frame);
-    }
-}
-
-static void script_ends_inside(fake *self)
-{
-    static const unsigned char frame[] = "\x80\0\0\0\x34\0\0\0\0\0\0\0\0\0\0\0\x01\x01";
-    if (fake_welcome(self, false)) {
-        fake_write(self, frame, sizeof frame);
-    }
-}
-
-static void script_guesses(fake *self)
-{
-    static const uint8_t guess[AUTH_TOKEN_SIZE] = {0};
-    if (fake_welcome(self, true)) {
-        fake_admit(self, guess);
-    }
-}
-
-static void script_silent(fake *self)
-{
-    while (fake_read(self)) {
-    }
-}
-
-TEST(link_is_not_hurt_by_whoever_listens_there)
-{
-    static const struct {
-        void (*script)(fake *self);
-        int timeout_ms, code;
-    } cases[] = {
-        {script_another_version, LONG_MS, AWTCLIENT_PEER}, {script_wrong_length, LONG_MS, AWTCLIENT_PEER},
-        {script_endless_length, LONG_MS, AWTCLIENT_PEER},  {script_ends_inside, LONG_MS, AWTCLIENT_CLOSED},
-        {script_guesses, LONG_MS, AWTCLIENT_TOKEN},        {script_silent, 100, AWTCLIENT_TIMEOUT},
-    };
-    static proto_message message;
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        fake server;
-        awtclient_error error = {.code = 0};
-        CHECK(fake_start(&server, cases[i].script));
-        awtlink *link = open_link(&server, cases[i].timeout_ms, &error);
-        CHECK(link != NULL);
-        CHECK(link && !(wait_ready(link, &error) && wait_message(link, &message, &error)));
-        CHECK_INT(error.code, cases[i].code);
-        CHECK(error.text[0] != '\0');
-        awtlink_close(link);
-        fake_stop(&server);
-    }
 }
