@@ -127,7 +127,7 @@ static long connected(socket_state *self, awtclient_error *error)
         if (self->descriptor >= 0 && !socket_wait(self->descriptor, AWTLINK_WRITE, 0)) {
             return AWTLINK_WANT_WRITE;
         }
-        int failure = EBADF;
+        int failure = self->reason; /* of the last place, where none is left */
         socklen_t size = sizeof failure;
         if (self->descriptor >= 0 && getsockopt(self->descriptor, SOL_SOCKET, SO_ERROR, &failure, &size) == 0 &&
             failure == 0) {

@@ -72,7 +72,6 @@ static bool read_addresses(int from, char *address, char *admin, size_t size)
     return false;
 }
 
-/* Starts a program that says where it listens. */
 static bool spawn(const char *const *all, pid_t *pid, char *address, char *admin, size_t size)
 {
     int out[2];
@@ -88,6 +87,11 @@ static bool spawn(const char *const *all, pid_t *pid, char *address, char *admin
     bool up = *pid > 0 && read_addresses(out[0], address, admin, size);
     close(out[0]);
     return up;
+}
+
+bool daemon_spawn(const char *const *all, pid_t *pid, char *address, size_t size)
+{
+    return spawn(all, pid, address, NULL, size);
 }
 
 bool daemon_start(daemon_process *daemon, int workers, const char *const *arguments)

@@ -37,6 +37,10 @@ typedef struct line_process {
     char address[128];
 } line_process;
 
+/* Starts any program that first says "listening on HOST:PORT": all[0], with what follows up to NULL as its arguments.
+ */
+bool daemon_spawn(const char *const *all, pid_t *pid, char *address, size_t size);
+
 bool line_start(line_process *line, const char *target, const char *delay_ms, const char *jitter_ms, const char *rate);
 /* Accepts a line that did not start. */
 void line_stop(line_process *line);

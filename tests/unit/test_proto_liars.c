@@ -4,6 +4,7 @@
 #include "codec.h"
 #include "liars_fixture.h"
 
+#include <errno.h>
 #include <poll.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -202,6 +203,7 @@ TEST(client_says_when_nobody_is_there)
     fake_stop(&server); /* the port is free now */
     CHECK(!fake_open(&server, NULL, LIAR_LONG_MS, &error));
     CHECK_INT(error.code, AWTCLIENT_ADDRESS);
+    CHECK(strstr(error.text, strerror(ECONNREFUSED)) != NULL);
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         awtclient_options options = {.address = wrong[i]};
         CHECK(!awtclient_open(&options, &error));
