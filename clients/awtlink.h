@@ -23,6 +23,7 @@ extern "C" {
 
 /* ---- errors, and what is wanted ---------------------------------------------------------------------- */
 
+/* Written where something fails; wherever one is taken it may be NULL. */
 typedef struct awtclient_error {
     int code;   /* a PROTO_ERROR_ code that the daemon sent, or one of awtclient_failure (negative) */
     bool retry; /* trying again may help */

@@ -13,10 +13,10 @@ framering *framering_create(void);
 /* Accepts NULL. */
 void framering_destroy(framering *ring);
 
-/* Reads a FRAME of strands or, by `binding` (NULL for others), of guides, whole, as a mesh or as
- * numbers, or a delta, or of ribbons, and keeps it
- * under its sequence. *out are its strands, of guides evaluated here, good until the next call. AWT_BAD_VALUE (a delta
- * against a frame that is not here, or a kind without strands), and what the readers of geom/receive.h say. */
+/* Reads a FRAME of ribbons, of strands or, by `binding` (NULL for others), of guides, whole, as a mesh or as numbers,
+ * or a delta, and keeps it under its sequence. *out are its strands, of guides evaluated here, good until the next
+ * call. AWT_BAD_VALUE (a delta against a frame that is not here, or a kind without strands), and what the readers of
+ * geom/receive.h say. */
 awt_status framering_take(framering *ring, const struct proto_frame *frame, const geom_binding *binding,
                           const geom_strands **out, awt_error *error);
 

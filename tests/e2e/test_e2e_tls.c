@@ -2,10 +2,10 @@
  * here `openssl s_client` speaks TLS at the end of a socket pair, and Python's ssl takes it before a real daemon. */
 #include "check.h"
 #include "e2e/daemon.h"
+#include "socket.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -169,8 +169,8 @@ TEST(e2e_client_gets_the_same_hair_through_tls_and_comes_back_through_it)
     awtsession *session = awtsession_open(&again, awtclient_now_us(), &error);
     int opened = 0, lost = 0;
     while (session && opened < 2 && awtsession_pump(session, awtclient_now_us(), &error)) {
-        struct pollfd entry = {.fd = awtsession_descriptor(session), .events = POLLIN};
-        poll(&entry, 1, awtsession_pending(session) ? 0 : 10);
+        socket_wait(awtsession_descriptor(session), awtsession_wanted(session),
+                    awtsession_pending(session) ? 0 : awtsession_deadline_us(session));
         switch (awtsession_next(session, &message, &error)) {
         case AWTSESSION_OPENED:
             if (++opened == 1) {

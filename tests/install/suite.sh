@@ -25,6 +25,12 @@ flags() {
         sed -n 's/^\(Cflags\|Libs\): //p' "$place/lib/pkgconfig/$1.pc" | tr '\n' ' '
     fi
 }
+for header in "$place"/include/awt/*.h; do # each stands alone, in both languages
+    for compiler in "${CC:-cc} -x c -std=c17" "${CXX:-c++} -x c++ -std=c++11" "${CXX:-c++} -x c++ -std=c++20"; do
+        echo "#include <$(basename "$header")>" | $compiler -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I"$place/include/awt" - ||
+            fail "$(basename "$header") alone, by $compiler"
+    done
+done
 for language in c c++; do
     compiler=$([ $language = c ] && echo "${CC:-cc} -std=c17" || echo "${CXX:-c++} -std=c++17")
     $compiler -x $language -Wall -Wextra -Werror -o "$place/shared" tests/install/engine.c $(flags awtclient)

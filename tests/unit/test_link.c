@@ -3,6 +3,7 @@
 #include "check.h"
 #include "codec.h"
 #include "fake_daemon.h"
+#include "socket.h"
 
 #include <poll.h>
 #include <stdlib.h>
@@ -14,13 +15,11 @@ enum { LONG_MS = FAKE_PATIENCE_MS };
 /* One turn of a caller's loop. */
 static bool turn(awtlink *link, awtclient_error *error)
 {
-    unsigned wanted = awtlink_wanted(link);
-    struct pollfd entry = {.fd = awtlink_descriptor(link),
-                           .events =
-                               (short)((wanted & AWTLINK_READ ? POLLIN : 0) | (wanted & AWTLINK_WRITE ? POLLOUT : 0))};
-    int64_t left_us = awtlink_deadline_us(link) - awtclient_now_us();
-    int left_ms = left_us < INT64_C(1000) * LONG_MS ? (int)(left_us / 1000) + 1 : LONG_MS;
-    poll(&entry, 1, awtlink_pending(link) ? 0 : left_ms);
+    const int64_t due_us = awtlink_deadline_us(link), last_us = awtclient_now_us() + INT64_C(1000) * LONG_MS;
+    socket_wait(awtlink_descriptor(link), awtlink_wanted(link),
+                awtlink_pending(link) ? 0
+                : due_us < last_us    ? due_us
+                                      : last_us);
     return awtlink_pump(link, awtclient_now_us(), error);
 }
 

@@ -3,6 +3,7 @@
 #include "check.h"
 #include "codec.h"
 #include "liars_fixture.h"
+#include "socket.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -40,12 +41,11 @@ static void ask_until_over(awtlink *link, awtclient_error *error)
     awtcodec_match match = AWTCODEC_OTHER;
     while (match == AWTCODEC_OTHER) {
         if (!awtlink_next(link, &message, error)) {
-            const unsigned wanted = awtlink_wanted(link);
-            struct pollfd entry = {.fd = awtlink_descriptor(link)};
-            entry.events = (short)((wanted & AWTLINK_READ ? POLLIN : 0) | (wanted & AWTLINK_WRITE ? POLLOUT : 0));
-            const int64_t left_us = awtlink_deadline_us(link) - awtclient_now_us();
-            const int64_t left_ms = left_us < 1000 * LIAR_LONG_MS ? left_us / 1000 + 1 : LIAR_LONG_MS;
-            poll(&entry, 1, awtlink_pending(link) || left_ms < 0 ? 0 : (int)left_ms);
+            const int64_t due_us = awtlink_deadline_us(link), last_us = awtclient_now_us() + 1000 * LIAR_LONG_MS;
+            socket_wait(awtlink_descriptor(link), awtlink_wanted(link),
+                        awtlink_pending(link) ? 0
+                        : due_us < last_us    ? due_us
+                                              : last_us);
             if (error->code != 0 || !awtlink_pump(link, awtclient_now_us(), error) ||
                 (awtlink_ready(link) && list.request == 0 && !awtlink_queue(link, &list, error))) {
                 return;

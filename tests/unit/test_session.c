@@ -3,8 +3,8 @@
 #include "check.h"
 #include "backoff.h"
 #include "fake_daemon.h"
+#include "socket.h"
 
-#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -116,12 +116,11 @@ static awtsession_news next_news(awtsession *session, proto_message *message, aw
         if (news != AWTSESSION_NOTHING) {
             return news;
         }
-        const unsigned wanted = awtsession_wanted(session);
-        struct pollfd entry = {.fd = awtsession_descriptor(session)};
-        entry.events = (short)((wanted & AWTLINK_READ ? POLLIN : 0) | (wanted & AWTLINK_WRITE ? POLLOUT : 0));
-        const int64_t left_us = awtsession_deadline_us(session) - awtclient_now_us();
-        const int left_ms = left_us < 0 ? 0 : left_us < INT64_C(1000) * LONG_MS ? (int)(left_us / 1000) + 1 : LONG_MS;
-        poll(&entry, 1, awtsession_pending(session) ? 0 : left_ms);
+        const int64_t due_us = awtsession_deadline_us(session), last_us = awtclient_now_us() + INT64_C(1000) * LONG_MS;
+        socket_wait(awtsession_descriptor(session), awtsession_wanted(session),
+                    awtsession_pending(session) ? 0
+                    : due_us < last_us          ? due_us
+                                                : last_us);
         if (!awtsession_pump(session, awtclient_now_us(), error)) {
             return AWTSESSION_NOTHING;
         }
