@@ -221,6 +221,17 @@ static void answer_all(service *shared, resident *r)
     r->work.inputs = r->work.looks = NULL;
 }
 
+/* Has those send it that were `silent` since then, or those that were not. Who reads gives back its credit; who does
+ * not lets the socket fill, which makes every byte for it dearer: so it comes last. */
+static void stream_to(const resident *r, bool silent, int64_t since_us)
+{
+    for (subscription *sub = r->subscriptions; sub; sub = sub->next_of_forest) {
+        if ((sub->session->heard_us < since_us) == silent) {
+            session_stream(sub->session);
+        }
+    }
+}
+
 static void take_drawn(service *shared, resident *r)
 {
     const bool drawn = take_picture(shared, r);
@@ -231,9 +242,9 @@ static void take_drawn(service *shared, resident *r)
     answer_all(shared, r);
     if (drawn) {
         subscriptions_offer(r, r->latest);
-        for (subscription *sub = r->subscriptions; sub; sub = sub->next_of_forest) {
-            session_stream(sub->session);
-        }
+        const int64_t since_us = shared->options.clock_us() - LIMIT_SILENT_US;
+        stream_to(r, false, since_us);
+        stream_to(r, true, since_us);
     }
 }
 

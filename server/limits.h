@@ -89,6 +89,7 @@ enum { LIMIT_BUSY_RETRY_MS = 100, LIMIT_FULL_RETRY_MS = 2000 }; /* ERROR BUSY's 
 #define LIMIT_STEP_US INT64_C(10000)          /* a request for a step or a look is late after that */
 #define LIMIT_IDLE_US INT64_C(2000000)        /* after so long a connection is idle */
 #define LIMIT_NEWCOMER_US INT64_C(250000)     /* and after so long, if it has never been busy */
+#define LIMIT_SILENT_US INT64_C(200000)       /* who has said nothing for so long gets its frame after the others */
 #define LIMIT_FREE_BEHIND_US \
     INT64_C(50000) /* simulated, by which a free-running forest may lag before time is dropped */
 #define LIMIT_FREE_UNSEEN_US INT64_C(200000)     /* from one job of a free-running forest to the next: nobody looks; */

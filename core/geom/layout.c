@@ -194,7 +194,7 @@ static awt_status make_template(geom_layout *layout, awt_error *error)
                        .patches = calloc(layout->patch_count, sizeof *frame.patches),
                        .patch_count = layout->patch_count,
                        .widths = layout->half_width ? calloc(layout->points_per_strand, sizeof *frame.widths) : NULL};
-    awt_status status = error_set(error, AWT_NO_MEMORY, NULL);
+    awt_status status = AWT_NO_MEMORY;
     if (frame.patches && (frame.widths || !layout->half_width)) {
         for (uint32_t i = 0; i < layout->patch_count; i++) {
             frame.patches[i] = (glb_patch){.first_strand = layout->patches[i].first_strand,
@@ -206,6 +206,8 @@ static awt_status make_template(geom_layout *layout, awt_error *error)
             frame.widths[i] = 2 * layout->half_width[i];
         }
         status = glb_template_make(&frame, &layout->frame, error);
+    } else {
+        error_set(error, AWT_NO_MEMORY, NULL);
     }
     free(frame.patches);
     free(frame.widths);

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum { FIXTURE_KEPT = 16 };
+enum { FIXTURE_KEPT = 64 };
 
 const awt_groom *fixture_groom(const char *style_name, uint32_t strands)
 {

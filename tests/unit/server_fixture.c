@@ -56,7 +56,9 @@ static void keep(fake_client *client, const proto_message *message)
     if (client->count == FAKE_RECEIVED) {
         return;
     }
+    static uint64_t turns;
     fake_received *kept = &client->received[client->count++];
+    kept->turn = ++turns;
     kept->size = proto_encoded_size(message);
     kept->bytes = malloc(kept->size);
     CHECK(kept->size > 0 && kept->bytes);

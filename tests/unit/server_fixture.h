@@ -9,6 +9,7 @@ enum { FAKE_RECEIVED = 512, FAKE_SESSIONS = 128 /* that the service takes */ };
 
 /* One message that a session sent; its texts and blobs point into `bytes`. */
 typedef struct fake_received {
+    uint64_t turn; /* of all messages that any session sent: 1, 2, ... */
     proto_message message;
     unsigned char *bytes;
     size_t size;

@@ -2,6 +2,8 @@
 #include "server_fixture.h"
 #include "check.h"
 
+#include <string.h>
+
 static uint64_t subscribe(fake_client *client, uint64_t forest, uint32_t credit, uint16_t rate)
 {
     proto_message message = {.type = PROTO_SUBSCRIBE, .request = 60};
@@ -44,6 +46,7 @@ typedef struct scene {
     service shared;
     fake_client *driver, *viewer;
     uint64_t forest;
+    uint8_t view_token[REGISTRY_TOKEN_SIZE];
     int64_t time_us;
 } scene;
 
@@ -57,9 +60,8 @@ static void scene_init(scene *s)
     s->forest = made.forest;
     proto_message attach = {.type = PROTO_ATTACH};
     attach.as.attach.forest = made.forest;
-    for (int i = 0; i < 16; i++) {
-        attach.as.attach.token[i] = made.view_token[i];
-    }
+    memcpy(s->view_token, made.view_token, sizeof s->view_token);
+    memcpy(attach.as.attach.token, made.view_token, sizeof made.view_token);
     CHECK(fake_send(s->viewer, &attach));
     fake_expect(s->viewer, PROTO_ATTACH_REPLY);
 }
@@ -102,6 +104,42 @@ TEST(server_stream_waits_for_a_slow_receiver_without_slowing_the_driver)
     s.viewer->congested = false;
     session_stream(&s.viewer->talk);
     expect_frame(s.viewer, 5, 3);
+    scene_fini(&s);
+}
+
+TEST(server_stream_serves_who_has_said_nothing_for_a_while_after_the_others)
+{
+    enum { VIEWERS = 5 };
+    scene s;
+    scene_init(&s);
+    fake_client *viewers[VIEWERS];
+    uint64_t handles[VIEWERS];
+    for (int i = 0; i < VIEWERS; i++) {
+        viewers[i] = fake_client_open(&s.shared);
+        proto_message attach = {.type = PROTO_ATTACH};
+        attach.as.attach.forest = s.forest;
+        memcpy(attach.as.attach.token, s.view_token, sizeof s.view_token);
+        CHECK(fake_send(viewers[i], &attach));
+        fake_expect(viewers[i], PROTO_ATTACH_REPLY);
+        handles[i] = subscribe(viewers[i], s.forest, 100, 0);
+    }
+    fake_now_us += LIMIT_SILENT_US + 1;
+    for (int i = 0; i < VIEWERS; i += 2) {
+        credit(viewers[i], handles[i], 1); /* of 0 to 4, 1 and 3 are silent */
+    }
+    advance(&s.shared, s.driver, s.forest, &s.time_us, 1);
+    uint64_t last_heard = 0, first_silent = UINT64_MAX;
+    for (int i = 0; i < VIEWERS; i++) {
+        const uint64_t turn = viewers[i]->received[viewers[i]->next].turn;
+        CHECK_INT(fake_expect(viewers[i], PROTO_FRAME)->as.frame.sequence, 2);
+        if (i % 2) {
+            first_silent = turn < first_silent ? turn : first_silent;
+        } else {
+            last_heard = turn > last_heard ? turn : last_heard;
+        }
+        fake_client_destroy(viewers[i]);
+    }
+    CHECK(last_heard < first_silent);
     scene_fini(&s);
 }
 
