@@ -175,7 +175,7 @@ bool engine_hair_listen(engine_hair *hair)
         case AWTSESSION_NOTHING:
             return true;
         case AWTSESSION_LOST:
-            hair->measure->losses++;
+            engine_measure_lost(hair->measure);
             hair->subscription = 0;
             fprintf(stderr, "engine_loop: %s; trying again\n", error.text);
             break;

@@ -19,6 +19,12 @@ void engine_measure_tick(engine_measure *m, int64_t due_us, int64_t came_us)
     m->woken_late_us = late_us > LATE_US ? m->last_time_us + late_us : m->woken_late_us;
 }
 
+void engine_measure_lost(engine_measure *m)
+{
+    m->losses++;
+    m->lost_us = m->last_time_us;
+}
+
 void engine_measure_frame(engine_measure *m, const struct proto_frame *frame, const awtclock *clock)
 {
     const double age_us = (double)awtclock_age_us(clock, frame->age_us);
@@ -42,9 +48,11 @@ static bool felt(int64_t late_us, int64_t time_us)
 /* A stall is told apart when it is over: then what it waited for has come. */
 static void end_stall(engine_measure *m, int64_t time_us)
 {
-    const engine_cause cause = felt(m->woken_late_us, time_us)  ? ENGINE_BY_LOOP
-                               : felt(m->left_late_us, time_us) ? ENGINE_BY_DAEMON
-                                                                : ENGINE_BY_WAY;
+    const bool lost = m->lost_us != 0 && time_us - m->lost_us <= m->stall_us + FELT_US;
+    const engine_cause cause = lost                              ? ENGINE_BY_LOSS
+                               : felt(m->woken_late_us, time_us) ? ENGINE_BY_LOOP
+                               : felt(m->left_late_us, time_us)  ? ENGINE_BY_DAEMON
+                                                                 : ENGINE_BY_WAY;
     m->longest_stall_us[cause] = m->stall_us > m->longest_stall_us[cause] ? m->stall_us : m->longest_stall_us[cause];
     m->stall_us = 0;
 }
@@ -86,6 +94,7 @@ static void write_json(const engine_measure *m, const awtframes *frames, const a
     jsonout_unsigned(&j, "between", ways[AWTFRAMES_BETWEEN]);
     jsonout_unsigned(&j, "beyond", ways[AWTFRAMES_BEYOND]);
     jsonout_unsigned(&j, "held", ways[AWTFRAMES_HELD]);
+    jsonout_integer(&j, "longest_stall_by_loss_us", m->longest_stall_us[ENGINE_BY_LOSS]);
     jsonout_integer(&j, "longest_stall_by_loop_us", m->longest_stall_us[ENGINE_BY_LOOP]);
     jsonout_integer(&j, "longest_stall_by_daemon_us", m->longest_stall_us[ENGINE_BY_DAEMON]);
     jsonout_integer(&j, "longest_stall_by_way_us", m->longest_stall_us[ENGINE_BY_WAY]);
@@ -113,9 +122,9 @@ static void write_text(const engine_measure *m, const awtframes *frames, const a
            (double)m->tick_us / 1000, m->late_ticks, (double)m->latest_us / 1000);
     printf("%" PRIu64 " shown between frames, %" PRIu64 " beyond, %" PRIu64 " held\n", ways[AWTFRAMES_BETWEEN],
            ways[AWTFRAMES_BEYOND], ways[AWTFRAMES_HELD]);
-    printf("longest stall: %.1f ms by the way, %.1f by a late daemon, %.1f by this loop, woken late\n",
+    printf("longest stall: %.1f ms by the way, %.1f by a late daemon, %.1f by this loop, woken late, %.1f by a loss\n",
            (double)m->longest_stall_us[ENGINE_BY_WAY] / 1000, (double)m->longest_stall_us[ENGINE_BY_DAEMON] / 1000,
-           (double)m->longest_stall_us[ENGINE_BY_LOOP] / 1000);
+           (double)m->longest_stall_us[ENGINE_BY_LOOP] / 1000, (double)m->longest_stall_us[ENGINE_BY_LOSS] / 1000);
     printf("%" PRIu64 " frames, %.1f KB each; age %.1f ms, at most %.1f; round %.1f ms; asked for %.1f ms ahead\n",
            m->received, mean(m->bytes, m->received) / 1000, mean(m->age_sum_us, m->received) / 1000,
            m->age_greatest_us / 1000, (double)awtclock_round_us(clock) / 1000, (double)m->lead_us / 1000);

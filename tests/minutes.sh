@@ -29,7 +29,7 @@ figure() { sed -n "s/.*\"$1\": *\\([0-9]*\\).*/\\1/p" "$work/json"; }
 run() {
     "$build/engine_loop" --connect "$2" --token-file "$work/state/token" --rate "$1" --seconds "$seconds" --json "$work/json" ||
         return 1
-    by_way=$(figure longest_stall_by_way_us)
+    by_way=$(($(figure longest_stall_by_way_us) + $(figure longest_stall_by_loss_us)))
     by_machine=$(($(figure longest_stall_by_loop_us) + $(figure longest_stall_by_daemon_us)))
     cause=stream stall_us=$by_way
     [ "$by_way" -le $frame_us ] && [ "$by_machine" -gt $frame_us ] && cause=machine stall_us=$by_machine
