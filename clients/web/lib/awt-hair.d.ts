@@ -37,7 +37,7 @@ export declare const DEFAULT_LIGHT: LightSettings;
 export declare class AwtError extends Error { code: string; retry: boolean; retryAfterMs: number; }
 
 /** Events: 'state' { state, reason, share }, 'forest' Forest, 'frame' Stats, 'nodes', 'shown' Shown | null, 'body' number[7],
- * 'refused' Error, 'open' { server }. */
+ * 'refused' Error, 'open' { server }, 'between' (what is seen has gone on between two frames: draw anew). */
 export declare class AwtHair extends EventTarget {
   /** `url`: of the gateway, e.g. ws://127.0.0.1:8080/awt; `token`: 32 hexadecimal digits, to view or to drive. */
   constructor(url: string, token: string, scene: Scene | null, options?: { kind?: Kind; level?: Level; nodes?: boolean });

@@ -8,6 +8,7 @@ import { AwtError, Connection } from './connection.js';
 import { Decoder } from './decoder.js';
 import { HairMesh } from './hair-mesh.js';
 import { Light } from './light.js';
+import { MovingHair } from './moving-hair.js';
 import { NodesMesh } from './nodes-mesh.js';
 import { upload } from './upload.js';
 
@@ -18,6 +19,7 @@ const KINDS = { strands: 1, guides: 2, nodes: 3 }, LEVELS = { full: 0, fifth: 1,
 const CREDIT = 2, RETRY_MS = [300, 600, 1200, 2500, 5000], REST = { position: [0, 1.6, 0], orientation: [0, 0, 0, 1] };
 const GONE = ['NO_FOREST', 'WRONG_TOKEN', 'NOT_ALLOWED'];
 const hexOf = (bytes) => [...bytes].map((byte) => byte.toString(16).padStart(2, '0')).join('');
+const OWN_STEPS_MS = 1000; /* a page that moves the hair itself sees it as soon as it comes */
 const bytesOf = (hex) => Uint8Array.from(hex.match(/../g) ?? [], (pair) => parseInt(pair, 16));
 
 export class AwtHair extends EventTarget {
@@ -32,10 +34,12 @@ export class AwtHair extends EventTarget {
     this.object.add(this.hair, this.nodes);
     scene?.add(this.object);
     this.decoder = new Decoder();
+    this.moving = new MovingHair(this.object, this.hair);
     this.subscriptions = [];
     this.attempts = 0;
     this.turn = 0; /* counts what the connection does about forests: what belongs to an earlier turn is over */
     this.connect();
+    this.draws = requestAnimationFrame((now) => this.draw(now));
   }
 
   /* ---- how things stand */
@@ -174,6 +178,7 @@ export class AwtHair extends EventTarget {
     this.subscriptions.forEach((subscription) => subscription.end());
     this.subscriptions = [];
     this.forest = null;
+    this.moving.reset();
     this.hair.hide();
     this.nodes.visible = false;
     this.stats = { strands: 0, frames: 0 };
@@ -236,11 +241,9 @@ export class AwtHair extends EventTarget {
       this.say('nodes', decoded);
       return have;
     }
-    const [x, y, z, ...orientation] = decoded.head;
-    this.hair.show(decoded);
-    this.object.position.set(x, y, z);
-    this.object.quaternion.set(...orientation);
-    this.object.updateMatrixWorld(true);
+    const now_ms = performance.now();
+    this.moving.take(decoded, Number(frame.time_us), now_ms);
+    this.moving.see(now_ms, this.drivesItself(now_ms));
     if (this.state !== 'live') {
       this.wasLive = true;
       this.enter('live');
@@ -251,6 +254,19 @@ export class AwtHair extends EventTarget {
       time_us: frame.time_us, sequence, skipped: frame.skipped, energy: frame.kinetic_energy_j };
     this.say('frame', this.stats);
     return have;
+  }
+
+  drivesItself(now_ms) {
+    return now_ms - (this.stepped_ms ?? -Infinity) < OWN_STEPS_MS;
+  }
+
+  /** Before each picture. */
+  draw(now_ms) {
+    this.draws = requestAnimationFrame((next) => this.draw(next));
+    if (this.state === 'live' && this.moving.moves) {
+      this.moving.see(now_ms, this.drivesItself(now_ms));
+      this.say('between');
+    }
   }
 
   /** Other kinds and levels from now on: { kind, level, nodes }. */
@@ -281,6 +297,7 @@ export class AwtHair extends EventTarget {
     this.epoch ??= Math.floor(Date.now() / 1000) >>> 0; /* later than that of whoever drove before */
     this.sequence = (this.sequence ?? 0) + 1;
     this.stepping = true;
+    this.stepped_ms = performance.now();
     try {
       this.connection.send('motion', { forest: handle, epoch: this.epoch, sequence: this.sequence, teleport: teleport ? 1 : 0, time_us: time, head, body });
       this.time_us = time;
@@ -326,6 +343,7 @@ export class AwtHair extends EventTarget {
   /** Ends the connection and frees what the graphics card holds. The forest lives on. */
   dispose() {
     clearTimeout(this.retry);
+    cancelAnimationFrame(this.draws);
     this.leave();
     this.connection.close();
     this.decoder.dispose();

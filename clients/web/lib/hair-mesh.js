@@ -1,4 +1,4 @@
-// hair-mesh.js: the strands of a frame as one mesh of ribbons; its points are a texture (hair-shaders.js).
+// hair-mesh.js: the strands between two frames as one mesh of ribbons; the points of both are textures (hair-shaders.js).
 import * as THREE from 'three';
 import { HAIR_FRAGMENT, HAIR_VERTEX, SHADOW_FRAGMENT, SHADOW_VERTEX } from './hair-shaders.js';
 
@@ -32,7 +32,7 @@ export class HairMesh extends THREE.Mesh {
     super(new THREE.BufferGeometry());
     this.light = light;
     this.frustumCulled = false; /* its points are not where three.js looks for them */
-    const strand = { positions: { value: null }, points: { value: 2 }, widths: { value: new Array(WIDTHS).fill(0) }, share: { value: 1 } };
+    const strand = { before: { value: null }, positions: { value: null }, weight: { value: 1 }, points: { value: 2 }, widths: { value: new Array(WIDTHS).fill(0) }, share: { value: 1 } };
     this.uniforms = {
       ...strand, ...light.uniforms, leastWidth: { value: 0.9 }, viewHeight: { value: 720 },
       pieces: { value: 1 }, headCentre: { value: new THREE.Vector3() }, hairColour: { value: new THREE.Color(0.13, 0.07, 0.035) },
@@ -40,33 +40,51 @@ export class HairMesh extends THREE.Mesh {
     this.material = new THREE.ShaderMaterial({ uniforms: this.uniforms, vertexShader: HAIR_VERTEX, fragmentShader: HAIR_FRAGMENT, side: THREE.DoubleSide });
     this.shadow = new THREE.ShaderMaterial({ uniforms: { ...strand, pieces: { value: 1 }, leastWidth: { value: 1 }, viewHeight: { value: 512 } },
       vertexShader: SHADOW_VERTEX, fragmentShader: SHADOW_FRAGMENT, side: THREE.DoubleSide });
-    this.strands = 0;
+    Object.assign(this, { strands: 0, points: 0, from: null, to: null, textures: [] });
     this.visible = false;
     light.addBlocker(this, this.shadow);
   }
 
-  /** A frame as receiver-worker.js gives it. */
-  show({ strands, points, positions, widths }) {
-    if (strands !== this.strands || points !== this.points) {
-      this.makeRoom(strands, points, positions);
-    } else {
-      this.texture.image.data = positions;
-      this.texture.needsUpdate = true;
+  /** What is between two frames, as receiver-worker.js gives them; `weight`: of the second one. Both may be the same. */
+  show(from, to, weight) {
+    const { uniforms } = this;
+    if (to.strands !== this.strands || to.points !== this.points) {
+      this.makeRoom(to.strands, to.points, to.positions.length);
     }
-    this.uniforms.widths.value = resample(widths);
-    this.visible = true;
-    this.light.dirty = true;
+    if (this.to !== to) {
+      this.swap();
+      this.fill(uniforms.positions.value, to);
+      uniforms.widths.value = resample(to.widths);
+      this.light.dirty = true;
+    }
+    if (this.from !== from && from !== to) { /* of one frame alone the weight is 1 */
+      this.fill(uniforms.before.value, from);
+    }
+    Object.assign(this, { from, to, visible: true });
+    uniforms.weight.value = from === to ? 1 : weight;
   }
 
-  makeRoom(strands, points, positions) {
+  /** The second frame becomes the first. */
+  swap() {
+    const { before, positions } = this.uniforms;
+    [before.value, positions.value] = [positions.value, before.value];
+    this.from = this.to;
+  }
+
+  fill(texture, { positions }) {
+    texture.image.data = positions;
+    texture.needsUpdate = true;
+  }
+
+  makeRoom(strands, points, floats) {
     const pieces = Math.max(1, Math.round(SMOOTH_POINTS / points)), standIn = this.light.blockers.get(this);
-    [this.geometry, standIn.geometry, this.texture].forEach((part) => part?.dispose());
+    [this.geometry, standIn.geometry, ...this.textures].forEach((part) => part?.dispose());
     this.geometry = ribbonGeometry(strands, (points - 1) * pieces + 1);
     standIn.geometry = pieces > 1 ? ribbonGeometry(strands, points) : this.geometry; /* a shadow need not be round */
-    this.texture = new THREE.DataTexture(positions, ROW_POINTS, positions.length / 4 / ROW_POINTS, THREE.RGBAFormat, THREE.FloatType);
-    this.texture.needsUpdate = true;
-    Object.assign(this, { strands, points });
-    this.uniforms.positions.value = this.texture;
+    this.textures = [0, 1].map(() => new THREE.DataTexture(new Float32Array(floats), ROW_POINTS, floats / 4 / ROW_POINTS, THREE.RGBAFormat, THREE.FloatType));
+    this.textures.forEach((texture) => { texture.needsUpdate = true; });
+    [this.uniforms.before.value, this.uniforms.positions.value] = this.textures;
+    Object.assign(this, { strands, points, from: null, to: null });
     this.uniforms.points.value = points;
     this.uniforms.pieces.value = pieces;
   }
@@ -84,7 +102,7 @@ export class HairMesh extends THREE.Mesh {
 
   dispose() {
     this.light.removeBlocker(this);
-    [this.geometry, this.material, this.shadow, this.texture].forEach((part) => part?.dispose());
+    [this.geometry, this.material, this.shadow, ...this.textures].forEach((part) => part?.dispose());
   }
 }
 

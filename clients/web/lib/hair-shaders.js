@@ -5,7 +5,8 @@ import { LIGHT_SHADER } from './light.js';
 /* There are no attributes: a vertex's number says strand, place along it and side, and the points are in a texture. Between two
  * points goes a curve (Catmull-Rom) through them and their neighbours, in straight pieces. */
 const STRAND = /* glsl */ `
-  uniform highp sampler2D positions; /* 1024 points a row */
+  uniform highp sampler2D before, positions; /* of two frames; 1024 points a row */
+  uniform float weight;      /* of the second one */
   uniform int points;        /* of a strand */
   uniform int pieces;        /* between two of them */
   uniform float widths[17];  /* metres, from root to tip */
@@ -14,7 +15,8 @@ const STRAND = /* glsl */ `
   uniform float viewHeight;  /* pixels */
 
   vec3 pointAt(int n) {
-    return texelFetch(positions, ivec2(n & 1023, n >> 10), 0).xyz;
+    ivec2 place = ivec2(n & 1023, n >> 10);
+    return mix(texelFetch(before, place, 0).xyz, texelFetch(positions, place, 0).xyz, weight);
   }
 
   float randomOf(int n) {

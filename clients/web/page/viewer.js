@@ -52,6 +52,7 @@ hair.addEventListener('frame', ({ detail }) => {
   }
   graph.add(detail);
 });
+hair.addEventListener('between', placeHead);
 hair.addEventListener('body', ({ detail: [x, y, z, ...orientation] }) => {
   figure.place('body', { position: [x, y, z], orientation });
   stage.changed = true;
