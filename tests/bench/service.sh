@@ -157,10 +157,10 @@ if wanted 5; then
     wait "$saturating" 2>/dev/null
 fi
 
-# Processor seconds that programs of ours which have ended took.
-spent() {
+# Sets `spent` to the processor seconds that programs of ours which have ended took; a shell of its own would have none.
+count_spent() {
     times >"$work/times"
-    awk 'NR == 2 { for (i = 1; i <= 2; i++) { split($i, t, "m"); s += 60 * t[1] + t[2] } printf "%.2f", s }' "$work/times"
+    spent=$(awk 'NR == 2 { for (i = 1; i <= 2; i++) { split($i, t, "m"); s += 60 * t[1] + t[2] } printf "%.2f", s }' "$work/times")
 }
 
 # How many heads of the long style run freely: more each time, until frames stay away: less than 97 % of 60 a second from
@@ -168,8 +168,9 @@ spent() {
 # to the processors that whoever watched so many took; says what gave way first. Usage: heads SHARE CLIP SETTLE, s.
 heads() {
     held=0 viewers=0
-    for count in 4 8 12 16 20 24 32 48 64 96 128 192 256 384 512; do
-        before=$(spent)
+    for count in 4 8 12 16 20 24 32 48 64 96 128 192 256; do # a connection opens no more
+        count_spent
+        before=$spent
         "$build/awt-load" --connect "$address" --token-file "$work/state/token" --quiet --settle "$3" --duration 5 --scenario stream --free \
             --strands 10000 --rate 60 --forests $count --connections $count --moving "$1" --motion "$2" >"$work/heads" 2>&1
         came=$(awk -v moving="$1" -v count=$count 'index($0, "awtd ") == 1 && $2 > 0 {
@@ -183,7 +184,8 @@ heads() {
         echo "$count heads, $1 moving ($2): $(awk -v s="$came" 'BEGIN { printf "%.1f", 100 * s }') % of the frames came, p99 $(figure heads awtd p99) us after what they show; $(sed -n 's/.*frames left out/left out/p' "$work/heads")"
         awk -v s="$came" 'BEGIN { exit s >= 0.97 }' && return
         held=$count
-        viewers=$(awk -v s="$(($3 + 5))" -v a="$before" -v b="$(spent)" 'BEGIN { printf "%.2f", (b - a) / s }')
+        count_spent
+        viewers=$(awk -v s="$(($3 + 5))" -v a="$before" -v b="$spent" 'BEGIN { printf "%.2f", (b - a) / s }')
     done
 }
 

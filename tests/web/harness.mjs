@@ -79,7 +79,7 @@ async function stop(program) {
 }
 
 const work = mkdtempSync(join(tmpdir(), 'awt-web-'));
-export const startAwtd = (port = 0) => start(join(build, 'awtd'), ['--listen', `127.0.0.1:${port}`, '--state-dir', join(work, 'state')]);
+export const startAwtd = (port = 0, ...more) => start(join(build, 'awtd'), ['--listen', `127.0.0.1:${port}`, '--state-dir', join(work, 'state'), ...more]);
 
 /** With its addresses: { drive, view } as pages, and { tokens }. */
 export async function startGateway(daemonPort, ...more) {

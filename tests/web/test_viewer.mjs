@@ -9,7 +9,7 @@ import { codec } from './socket.mjs';
 
 const STRANDS = 600, { browser, why } = await openBrowser();
 if (!browser) {
-  skip(16, why);
+  skip(20, why);
   await finish();
 }
 let awtd = await startAwtd();
@@ -116,6 +116,54 @@ await test('viewer_on_a_second_page_shows_the_same_hair', async () => {
   await second.page.close();
 });
 
+await test('viewer_that_only_looks_shows_hair_between_the_frames', async () => {
+  const second = await View.open(browser, gateway.view, { more: '&smooth=0&bare=1' });
+  await second.untilLive();
+  await second.page.evaluate(() => {
+    globalThis.weights = [];
+    viewer.hair.addEventListener('between', () => weights.push(viewer.hair.hair.uniforms.weight.value));
+  });
+  await view.page.mouse.move(100, 120);
+  await view.steps(30);
+  const { sequence } = await view.knows();
+  await second.untilIt((known) => known.sequence === sequence, 'the last step');
+  await until(() => second.page.evaluate(() => !viewer.hair.moving.moves), 'that the hair has come there');
+  const weights = await second.page.evaluate(() => weights);
+  check(weights.some((weight) => weight > 0 && weight < 1), `${weights.length} pictures between frames, none of them of both`);
+  await second.hold();
+  const at = async (weight) => {
+    await second.page.evaluate((w) => {
+      const { uniforms } = viewer.hair.hair, [before, now] = [uniforms.before, uniforms.positions].map(({ value }) => value);
+      before.image.data = now.image.data.map((x, i) => (i % 4 === 0 ? x + 0.04 : x)); /* 4 cm aside */
+      before.needsUpdate = true;
+      uniforms.weight.value = w;
+    }, weight);
+    return second.picture();
+  };
+  const [from, half, to] = [await at(0), await at(0.5), await at(1)];
+  for (const [name, apart] of [['first and half', countDifferent(from, half)], ['half and second', countDifferent(half, to)], ['first and second', countDifferent(from, to)]]) {
+    check(apart > 1000, `${name}: ${apart} pixels differ`);
+  }
+  equal(second.errors.join('; '), '', 'the browser complains');
+  await second.page.close();
+});
+
+await test('viewer_saves_its_settings_and_takes_them_again', async () => {
+  const settings = () => view.page.evaluate(() => ({ params: viewer.settings.params, slider: document.getElementById('wind_x').value }));
+  await view.page.evaluate(() => viewer.changed('wind_x', 2.5));
+  const [download] = await Promise.all([view.page.waitForEvent('download'), view.page.evaluate(() => document.getElementById('save').click())]);
+  const saved = readFileSync(await download.path());
+  equal(JSON.parse(saved).params.wind_x, 2.5, 'saved');
+  await view.page.evaluate(() => viewer.changed('wind_x', -1));
+  equal((await settings()).params.wind_x, -1, 'changed');
+  await view.drop('hair-settings.json', saved);
+  await until(async () => (await settings()).params.wind_x === 2.5 && Number((await settings()).slider) > 600, async () => `the saved settings; there are ${JSON.stringify(await settings())}`);
+  await view.untilLive();
+  await view.drop('broken.json', Buffer.from('{"params": '));
+  await until(async () => (await view.text('messages')).includes('broken.json: '), () => view.text('messages'));
+  await view.page.evaluate(() => viewer.changed('wind_x', 0));
+});
+
 await test('viewer_explains_files_that_it_cannot_use', async () => {
   const said = async (name, bytes, words) => {
     await view.drop(name, bytes);
@@ -153,6 +201,46 @@ await test('viewer_that_finds_only_ended_hair_makes_its_own', async () => {
   const next = await View.open(browser, gateway.drive);
   await next.untilIt((known) => known.state === 'live' && known.driving && known.forest !== before.forest, 'hair of its own');
   await next.page.close();
+});
+
+await test('viewer_has_a_face_while_hair_is_made', async () => {
+  const next = await View.open(browser, gateway.drive);
+  await next.untilLive();
+  const faces = await next.page.evaluate(() => new Promise((resolve) => {
+    const seen = [], look = () => seen.push([document.body.dataset.state, document.getElementById('face-title').textContent, document.getElementById('face-text').textContent, document.getElementById('face').hidden]);
+    viewer.hair.addEventListener('state', ({ detail }) => {
+      look();
+      detail.state === 'live' && resolve(seen);
+    });
+    viewer.changed('strands', 900);
+  }));
+  check(faces.some(([state, title, text, hidden]) => state === 'busy' && title === 'Making hair' && text.length > 0 && !hidden), JSON.stringify(faces));
+  check(faces.at(-1)[3], 'the card is gone when there is hair');
+  await next.page.close();
+});
+
+await test('viewer_has_faces_for_no_daemon_yet_no_hair_and_no_room', async () => {
+  const silent = createServer((socket) => socket.on('error', () => {}));
+  await new Promise((resolve) => silent.listen(0, '127.0.0.1', resolve));
+  const waits = await startGateway(silent.address().port), early = await View.open(browser, waits.drive);
+  await until(async () => await early.text('face-title') === 'Connecting', () => early.text('face-title'));
+  await early.page.close();
+  await waits.stop();
+  silent.close();
+
+  const small = await startAwtd(0, '--no-save', '--max-forests', '1'), fresh = await startGateway(small.port);
+  const looks = await View.open(browser, fresh.view);
+  await looks.untilIt(({ state }) => state === 'empty', 'that there is no hair');
+  check((await looks.text('face-text')).includes('as soon as somebody does'), await looks.text('face-text'));
+  const first = await View.open(browser, fresh.drive);
+  await first.untilLive();
+  await looks.untilLive(); /* there it is */
+  const other = await startGateway(small.port), second = await View.open(browser, other.drive);
+  await second.untilIt(({ state, reason }) => state === 'empty' && reason.includes('limit'), 'that there is no room');
+  check((await second.text('face-text')).includes('limit'), await second.text('face-text'));
+  await Promise.all([looks, first, second].map(({ page }) => page.close()));
+  await Promise.all([other, fresh].map((server) => server.stop()));
+  await small.stop();
 });
 
 await test('viewer_without_the_token_says_so', async () => {
