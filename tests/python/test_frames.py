@@ -139,8 +139,8 @@ class Frames(WithDaemon):
         forest = self.connect().create("short", strands=200)
         frames = forest.subscribe(kind="guides", deltas=True)
         forest.drive(*swing(1))
-        forest.close()
         next(frames)
+        forest.close()
         with self.assertRaises(awtd.AwtError) as raised:
             next(frames)
         self.assertEqual(raised.exception.code, 200)
