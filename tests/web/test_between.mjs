@@ -88,6 +88,50 @@ await test('between_keeps_a_bounded_number_of_frames_and_nothing_of_before', () 
   check(from >= 976 && to <= 999 && weight >= 0 && weight <= 1, `${from} to ${to}`);
 });
 
+/** Frames a number of ms apart, of simulated time at that rate, looked at each ms; what was shown of each ms. */
+function run(between, { from_ms, to_ms, every_ms, rate, from_us }) {
+  const shown = [];
+  for (let now_ms = from_ms; now_ms < to_ms; now_ms++) {
+    (now_ms - from_ms) % every_ms === 0 && between.add(now_ms, from_us + (now_ms - from_ms) * 1000 * rate, now_ms);
+    between.at(now_ms);
+    shown.push(between.shown_us);
+  }
+  return shown;
+}
+
+await test('between_goes_at_the_rate_of_simulated_time_and_learns_a_new_one', () => {
+  const between = new Between(), slow = run(between, { from_ms: 0, to_ms: 2000, every_ms: 20, rate: 0.25, from_us: 0 });
+  const speed = (shown, from, to) => (shown[to] - shown[from]) / (to - from) / 1000;
+  check(Math.abs(speed(slow, 1000, 1999) - 0.25) < 0.01, `it goes at ${speed(slow, 1000, 1999)}, not 0.25`);
+  between.forget();
+  const fast = run(between, { from_ms: 2000, to_ms: 3000, every_ms: 20, rate: 2, from_us: 500000 });
+  check(Math.abs(speed(fast, 500, 999) - 2) < 0.05, `it goes at ${speed(fast, 500, 999)}, not 2`);
+  check(500000 + 999 * 2000 - fast[999] < 60 * 2000, `it is ${(500000 + 999 * 2000 - fast[999]) / 2000} ms behind`);
+});
+
+await test('between_stands_still_in_a_pause_and_goes_on_from_there', () => {
+  const between = new Between();
+  run(between, { from_ms: 0, to_ms: 1000, every_ms: 10, rate: 1, from_us: 0 });
+  between.forget(); /* paused */
+  between.at(1200);
+  equal(between.moves, false, 'something moves');
+  const stood_us = between.shown_us;
+  between.at(11000);
+  equal(between.shown_us, stood_us, 'the time shown');
+  between.forget(); /* and on */
+  const after = run(between, { from_ms: 11000, to_ms: 11500, every_ms: 10, rate: 1, from_us: 1000000 });
+  check(after.every((us, i) => us >= (i > 0 ? after[i - 1] : stood_us)), 'it runs backwards');
+  check(Math.max(...after.slice(1).map((us, i) => us - after[i])) < 11000, 'it leaps');
+  check(1499000 - after.at(-1) < 30000, `it is ${(1499000 - after.at(-1)) / 1000} ms behind`);
+});
+
+await test('between_hair_that_wakes_is_shown_without_the_delay_of_rest', () => {
+  const between = new Between();
+  run(between, { from_ms: 0, to_ms: 5000, every_ms: 250, rate: 1, from_us: 0 }); /* as the daemon shows hair at rest */
+  const awake = run(between, { from_ms: 5000, to_ms: 6000, every_ms: 10, rate: 1, from_us: 5000000 });
+  check(5999000 - awake.at(-1) < 40000, `a second later it is ${(5999000 - awake.at(-1)) / 1000} ms behind`);
+});
+
 await test('between_newest_is_what_came_last', () => {
   const between = new Between();
   [0, 1, 2].forEach((n) => between.add(n, n * STEP_US, 10 * n));

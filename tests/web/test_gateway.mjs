@@ -92,10 +92,35 @@ await test('gateway_tells_viewers_what_is_shown', async () => {
   equal(shown.driven, true, 'somebody drives');
   driver.socket.send(JSON.stringify({ body: [0, 1.6, 0, 0, 0, 0, 1] }));
   await until(() => viewer.texts.some((text) => text.body?.length === 7), 'the body');
+  const late = new Client(gateway, 'view');
+  await until(() => late.texts.some((text) => text.body?.length === 7), 'the body, told to who comes later');
+  late.socket.close();
   driver.socket.close();
   await until(() => viewer.texts.at(-1).shown?.driven === false, 'that nobody drives any more');
   viewer.socket.send(JSON.stringify({ show: { forest: '1', drive: hex(drive), view: hex(view) } }));
   equal((await until(() => viewer.closed, 'the end')).code, 1008, 'a viewer that wants to show');
+});
+
+await test('gateway_tells_viewers_how_time_goes', async () => {
+  const driver = new Client(gateway, 'drive'), viewer = new Client(gateway, 'view'), other = new Client(gateway, 'drive');
+  await Promise.all([driver, viewer, other].map((client) => client.welcome()));
+  const { forest, drive_token: drive, view_token: view } = (await driver.ask('create', RECIPE)).values, handle = String(forest);
+  const say = (client, text) => client.socket.send(JSON.stringify(text)), clock = () => viewer.texts.at(-1).shown?.clock;
+  say(driver, { show: { forest: handle, drive: hex(drive), view: hex(view), clock: { mode: 'lockstep', rate: 1, more: 'than is told' } } });
+  await until(() => JSON.stringify(clock()) === '{"mode":"lockstep","rate":1}', () => JSON.stringify(viewer.texts.at(-1)));
+  say(other, { clock: { forest: handle, mode: 'paused', rate: 1 } }); /* it does not drive */
+  say(driver, { clock: { forest: '77', mode: 'paused', rate: 1 } }); /* not of what is shown */
+  await Promise.all([driver, other].map((client) => client.ask('list_styles', {}))); /* what was sent before has been heard */
+  say(driver, { clock: { forest: handle, mode: 'free', rate: 0.5 } });
+  await until(() => clock()?.mode === 'free' && clock().rate === 0.5, () => JSON.stringify(viewer.texts.at(-1)));
+  check(!viewer.texts.some(({ shown }) => shown?.clock?.mode === 'paused'), 'a clock of who does not drive');
+  const late = new Client(gateway, 'view');
+  await until(() => late.texts.some(({ shown }) => shown?.clock?.rate === 0.5), 'the clock, told to who comes later');
+  say(driver, { clock: { forest: handle, mode: 'fast', rate: 1 } });
+  equal((await until(() => driver.closed, 'the end')).code, 1008, 'a mode that there is not');
+  say(viewer, { clock: { forest: handle, mode: 'paused', rate: 1 } });
+  equal((await until(() => viewer.closed, 'the end')).code, 1008, 'a viewer that sets a clock');
+  [late, other].forEach((client) => client.socket.close());
 });
 
 /** A gateway before a daemon that answers each connection with these bytes. */

@@ -7,10 +7,20 @@ export type State = 'connecting' | 'empty' | 'busy' | 'live' | 'lost';
 export type Kind = 'guides' | 'strands';
 export type Level = 'full' | 'fifth' | 'guides';
 
-/** CREATE's fields (proto/PROTOCOL.md); `file`: strands of one's own (.hair, .tfx) instead of a style. */
+/** 'lockstep' (how every forest begins): step brings it from time to time. 'free': simulated time goes with the daemon's clock,
+ * `rate` simulated seconds a second (0.01 to 10), whether anybody drives or not; move says where the head is. 'paused': it stands still. */
+export type Mode = 'lockstep' | 'free' | 'paused';
+
+/** How a forest's time goes: it was simulated time `time_us` when the daemon's clock was `clock_us`, both microseconds; null where
+ * somebody else set it. Never changed, only replaced. */
+export interface Clock { readonly mode: Mode; readonly rate: number; readonly time_us: bigint | null; readonly clock_us: bigint | null; }
+
+/** CREATE's fields (proto/PROTOCOL.md); `file`: strands of one's own (.hair, .tfx) instead of a style; `clock`: how time goes, if
+ * not in lock-step. */
 export interface Recipe {
   style?: string; strands?: number; seed?: number | bigint; params?: Record<string, number>;
-  head?: Pose; body?: Pose; time_us?: number | bigint; file?: Uint8Array; name?: string; [field: string]: unknown;
+  head?: Pose; body?: Pose; time_us?: number | bigint; file?: Uint8Array; name?: string;
+  clock?: { mode: Mode; rate?: number } | null; [field: string]: unknown;
 }
 
 export interface Forest {
@@ -26,7 +36,7 @@ export interface Stats {
 }
 
 /** What the gateway's driving page shows. */
-export interface Shown { forest: string; token: string; driven: boolean; about: unknown; }
+export interface Shown { forest: string; token: string; driven: boolean; about: unknown; clock: { mode: Mode; rate: number } | null; }
 
 export interface LightSettings {
   key: { direction: number[]; colour: number[] }; rim: { direction: number[]; colour: number[] }; sky: number[];
@@ -37,7 +47,7 @@ export declare const DEFAULT_LIGHT: LightSettings;
 export declare class AwtError extends Error { code: string; retry: boolean; retryAfterMs: number; }
 
 /** Events: 'state' { state, reason, share }, 'forest' Forest, 'frame' Stats, 'nodes', 'shown' Shown | null, 'body' number[7],
- * 'refused' Error, 'open' { server }, 'between' (what is seen has gone on between two frames: draw anew). */
+ * 'clock' Clock | null, 'refused' Error, 'open' { server }, 'between' (what is seen has gone on between two frames: draw anew). */
 export declare class AwtHair extends EventTarget {
   /** `url`: of the gateway, e.g. ws://127.0.0.1:8080/awt; `token`: 32 hexadecimal digits, to view or to drive. */
   constructor(url: string, token: string, scene: Scene | null, options?: { kind?: Kind; level?: Level; nodes?: boolean });
@@ -57,12 +67,25 @@ export declare class AwtHair extends EventTarget {
   /** Back to what the gateway shows. */
   release(): void;
   choose(what: { kind?: Kind; level?: Level; nodes?: boolean }): Promise<void>;
-  /** Lock-step: poses of that time, and the hair there. False: the step before has not been answered, or nothing can be driven. */
+  /** Null: not known. The daemon does not tell: it is known of a forest made here, where setClock was said here, and of the forest
+   * that the gateway shows. Of a forest that is opened again after a loss, setClock is said again by itself; a page that follows
+   * the gateway's does that with takeWheel. Where another program sets the clock, steps fail, and it is null from then on. */
+  readonly clock: Clock | null;
+  /** Simulated time now, microseconds; null: not known. */
+  readonly now_us: bigint | null;
+  /** Rejects with AwtError where it is refused: nothing has changed then. `rate`: as it is, 1 at first; `importance`: when the
+   * daemon has too much to do, 0.001 to 1000. */
+  setClock(wish: { mode: Mode; rate?: number; importance?: number }): Promise<Clock>;
+  /** Lock-step: poses of that time, and the hair there. False: the step before has not been answered, nothing can be driven, or
+   * time does not go in lock-step. */
   step(time_us: number | bigint, head: Pose, body?: Pose, teleport?: boolean): Promise<boolean>;
+  /** Free-running: head and body are so now; best before each picture. Returns the simulated time that this pose is for, later
+   * than the last one's; null: nothing was sent, for time does not go freely (setClock), or nothing can be driven. */
+  move(head: Pose, body?: Pose, teleport?: boolean): bigint | null;
   setParams(params: Record<string, number>): Promise<unknown>;
   listStyles(): Promise<{ styles: Array<Record<string, unknown>>; params: Array<Record<string, unknown>> }>;
   show(about?: unknown): void;
-  takeWheel(): void;
+  takeWheel(): Promise<Clock>;
   sayBody(body: Pose): void;
   destroy(handle?: bigint): Promise<unknown>;
   dispose(): void;

@@ -8,6 +8,7 @@ const FASTEST = 1.5, SLOWEST = 0.5;
 const LEAP_MS = 1000;     /* a greater difference is not made up for but leapt over, forwards */
 const MEMORY = 1 / 16;    /* what a new interval counts in the mean of the jitter */
 const LONG_MEMORY = 1 / 64; /* and in that of the intervals: a stall and the burst behind it are to weigh each other out */
+const NARROWING = 1 / 8;  /* of the space between frames, which widens at once: hair that wakes shows more of them than it did at rest */
 
 export class Between {
   constructor() {
@@ -15,7 +16,13 @@ export class Between {
   }
 
   reset() {
-    Object.assign(this, { frames: [], interval_ms: 0, interval_us: 0, jitter_ms: 0, learnt: 0, shown_us: null, asked_ms: null });
+    Object.assign(this, { frames: [], shown_us: null, asked_ms: null });
+    this.forget();
+  }
+
+  /** Time goes on otherwise from here, faster or slower or after a pause: how frames come is to be learnt anew. */
+  forget() {
+    Object.assign(this, { interval_ms: 0, interval_us: 0, jitter_ms: 0, space_ms: 0, learnt: 0, begun: false });
   }
 
   /** `frame`: anything; `time_us`: the simulated time that it shows; `now_ms`: when it came. */
@@ -26,9 +33,10 @@ export class Between {
     } else if (last && time_us === last.time_us) {
       last.frame = frame;
       return;
-    } else if (last) {
+    } else if (last && this.begun) {
       this.learn(Math.min(now_ms - last.came_ms, LATEST_MS), time_us - last.time_us);
     }
+    this.begun = true;
     this.frames.push({ frame, time_us, came_ms: now_ms });
     this.frames.splice(0, this.frames.length - KEPT);
     this.shown_us ??= time_us;
@@ -38,7 +46,9 @@ export class Between {
     const share = Math.max(1 / ++this.learnt, LONG_MEMORY);
     this.interval_ms += share * (gap_ms - this.interval_ms);
     this.interval_us += share * (gap_us - this.interval_us);
-    this.jitter_ms += MEMORY * (Math.abs(gap_ms - this.interval_ms) - this.jitter_ms);
+    const even_ms = gap_us / this.rate; /* in which it would have come if all took the same way */
+    this.jitter_ms += MEMORY * (Math.abs(gap_ms - even_ms) - this.jitter_ms);
+    this.space_ms = Math.max(even_ms, this.space_ms + NARROWING * (even_ms - this.space_ms));
   }
 
   /** Simulated microseconds in a millisecond here. */
@@ -48,7 +58,7 @@ export class Between {
 
   /** How far behind the newest frame is shown. */
   get delay_ms() {
-    return Math.min(this.interval_ms + 3 * this.jitter_ms, LATEST_MS);
+    return Math.min(this.space_ms + 3 * this.jitter_ms, LATEST_MS);
   }
 
   advance(now_ms) {

@@ -2,10 +2,14 @@
 // once; who wants another makes another.
 import { makeCodec } from './codec.js';
 import * as lists from './messages.mjs';
+import { PeerClock } from './peer-clock.js';
 
 const codec = makeCodec(lists), NUMBER_OF_ERROR = lists.ERRORS;
 const ANSWER_MS = 60000, PING_MS = 2000;
-const now_us = () => BigInt(Math.round(performance.now() * 1000));
+/** This page's monotonic clock, BigInt microseconds. */
+export const now_us = () => BigInt(Math.round(performance.now() * 1000));
+/** Request id of what has no reply and may be refused without harm: `stray` is told it with the error. */
+export const LENIENT = 1n << 63n;
 
 /** An ERROR of the daemon; `code` is a name of errors.def. */
 export class AwtError extends Error {
@@ -18,14 +22,14 @@ export class AwtError extends Error {
 }
 
 export class Connection {
-  /** `heard`: { open(welcome), text(value), stray(error), closed({ reason, wasOpen }) }. */
+  /** `heard`: { open(welcome), text(value), stray(error, request), closed({ reason, wasOpen }) }. */
   constructor(url, token, heard) {
     this.heard = heard;
     this.waiting = new Map(); /* request -> { resolve, reject, timer, progress } */
     this.streams = new Map(); /* request -> { frame, ended } */
     this.last = 0n;
     this.isIn = false;
-    this.way_us = Infinity; /* least half of a way there and back */
+    this.peer = new PeerClock(); /* the daemon's clock */
     this.broken = null;
     this.socket = new WebSocket(url, ['awt.1', `awt.token.${token}`]);
     this.socket.binaryType = 'arraybuffer';
@@ -57,7 +61,7 @@ export class Connection {
     } else if (name === 'ping') {
       this.send('pong', { sent_us: values.sent_us, received_us: now_us(), answered_us: now_us() }, request);
     } else if (name === 'pong') {
-      this.way_us = Math.min(this.way_us, Number(now_us() - values.sent_us - (values.answered_us - values.received_us)) / 2);
+      this.peer.add(values.sent_us, values.received_us, values.answered_us, now_us());
     } else if (name === 'bye') {
       this.fail(`the server says: ${values.reason || 'goodbye'}`);
     } else if (this.streams.has(request)) {
@@ -65,7 +69,7 @@ export class Connection {
     } else if (this.waiting.has(request)) {
       this.answer(this.waiting.get(request), name, request, values);
     } else if (name === 'error') {
-      this.heard.stray(new AwtError(values));
+      this.heard.stray(new AwtError(values), request);
     }
   }
 

@@ -14,6 +14,11 @@ export class MovingHair {
     this.between.reset();
   }
 
+  /** Time goes otherwise from now on: what was learnt of how frames come is void. */
+  reckonAnew() {
+    this.between.forget();
+  }
+
   /** A frame as receiver-worker.js gives it, of that simulated time. */
   take(frame, time_us, now_ms) {
     const last = this.between.frames.at(-1)?.frame;

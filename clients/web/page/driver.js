@@ -1,5 +1,6 @@
-// driver.js: moves the head by what is chosen and brings the forest to that time, step by step: one step is under way at most,
-// and what the machine cannot keep up with is left out of simulated time, not made up for in a jerk.
+// driver.js: moves the head by what is chosen, as the hair's clock goes. In lock-step it brings the forest to each time, step by step:
+// one step is under way at most, and what the machine cannot keep up with is left out of simulated time, not made up for in a
+// jerk. Free-running it says where the head is now. The head's own time is simulated time: it is slow where hair is slow.
 
 const LONGEST_S = 0.1, SHORTEST_S = 0.004;
 
@@ -18,10 +19,16 @@ export class Driver {
 
   /** The forest is at that time. */
   begin(time_us) {
-    this.time_us = Number(time_us);
+    this.goOn(time_us);
     this.clipBegan_us = this.time_us;
-    this.last_s = null;
     this.driving = true;
+  }
+
+  /** Time goes otherwise from now on; the head goes on where it is. */
+  goOn(time_us) {
+    this.clipBegan_us += Number(time_us) - this.time_us;
+    this.time_us = Number(time_us);
+    this.last_s = null;
   }
 
   stop() {
@@ -39,29 +46,54 @@ export class Driver {
 
   /** Called before each picture. */
   tick(now_s) {
-    const seconds = Math.min(now_s - (this.last_s ?? now_s), LONGEST_S);
-    if (!this.driving || this.hair.stepping || this.hair.state !== 'live') {
-      this.last_s ??= now_s;
+    const { mode } = this.hair.clock ?? {}, is = this.driving && !this.paused && this.hair.state === 'live';
+    if (is && mode === 'free') {
+      this.follow();
+    } else if (is && mode === 'lockstep') {
+      this.lead(now_s);
+    } else {
+      this.last_s = now_s;
+    }
+  }
+
+  lead(now_s) {
+    this.last_s ??= now_s;
+    const seconds = Math.min(now_s - this.last_s, LONGEST_S);
+    if (!this.hair.stepping && seconds >= SHORTEST_S) {
+      this.last_s = now_s;
+      this.advance(seconds);
+    }
+  }
+
+  /** By the daemon's clock: the head as it is now. */
+  follow() {
+    const passed_us = this.hair.now_us === null ? 0 : Number(this.hair.now_us) - this.time_us;
+    const seconds = Math.min(passed_us * 1e-6, LONGEST_S);
+    if (seconds < SHORTEST_S) {
       return;
     }
-    if (this.last_s === null || this.paused || seconds < SHORTEST_S) {
-      this.last_s = this.paused ? now_s : this.last_s ?? now_s;
-      return;
+    this.clipBegan_us += passed_us - Math.round(seconds * 1e6); /* while nobody looked at this page the clip stood still */
+    this.time_us += passed_us;
+    this.pose = this.poseAfter(seconds);
+    if (this.hair.move(this.pose.head, this.pose.body, this.takeJump()) !== null) {
+      this.hair.sayBody(this.pose.body);
     }
-    this.last_s = now_s;
-    this.advance(seconds);
   }
 
   /** A step of so many seconds; resolves when the hair is there. */
   async advance(seconds) {
     this.time_us += Math.round(seconds * 1e6);
     this.pose = this.poseAfter(seconds);
-    const teleport = this.jump === true;
-    this.jump = false;
-    const done = await this.hair.step(this.time_us, this.pose.head, this.pose.body, teleport);
+    const done = await this.hair.step(this.time_us, this.pose.head, this.pose.body, this.takeJump());
     if (done) {
       this.hair.sayBody(this.pose.body);
     }
     return done;
+  }
+
+  takeJump() {
+    const is = this.jump === true;
+    this.jump = false;
+    return is;
   }
 }

@@ -3,6 +3,7 @@
 import * as THREE from 'three';
 import { AwtHair } from '/awt/awt-hair.js';
 import { builtInClip, fileClip } from './clips.js';
+import { ClockControl, clockText } from './clock.js';
 import { Driver } from './driver.js';
 import { Faces } from './faces.js';
 import { Figure } from './figure.js';
@@ -24,6 +25,7 @@ const hair = new AwtHair(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${l
 const figure = new Figure(stage.scene, hair.light), mouse = new MouseHead(stage.canvas), driver = new Driver(hair, mouse);
 const faces = new Faces(), graph = new Graph(document.getElementById('graph')), panel = new Panel(changed, pressed);
 const failed = (text) => faces.say(text, 'error');
+const clock = new ClockControl(hair, failed);
 
 /* ---- what is shown */
 
@@ -31,7 +33,8 @@ function stand() {
   const role = driver.driving ? 'drives' : hair.scope === 'drive' && hair.state === 'live' ? 'may' : 'looks';
   const about = made ? (file?.name ?? settings.style) : String(hair.shown?.about?.name ?? 'hair').slice(0, 64);
   const { strands, points } = hair.stats;
-  panel.stand(role, about, strands ? `${strands.toLocaleString('en')} strands of ${points} points · ${hair.server ?? ''}` : hair.server ?? '…');
+  const hairs = strands ? `${strands.toLocaleString('en')} strands of ${points} points` : '', time = role === 'drives' ? '' : clockText(hair.clock);
+  panel.stand(role, about, [hairs, hair.server, time].filter(Boolean).join(' · ') || '…');
 }
 
 function paint() {
@@ -53,8 +56,14 @@ hair.addEventListener('frame', ({ detail }) => {
   graph.add(detail);
 });
 hair.addEventListener('between', placeHead);
+hair.addEventListener('clock', () => {
+  driver.goOn(hair.time_us);
+  stand();
+});
+let toldBody = driver.pose.body; /* of who drives elsewhere */
 hair.addEventListener('body', ({ detail: [x, y, z, ...orientation] }) => {
-  figure.place('body', { position: [x, y, z], orientation });
+  toldBody = { position: [x, y, z], orientation };
+  figure.place('body', toldBody);
   stage.changed = true;
 });
 hair.addEventListener('nodes', () => {
@@ -101,10 +110,10 @@ hair.addEventListener('shown', ({ detail: shown }) => {
 hair.addEventListener('forest', ({ detail: forest }) => {
   figure.shape(forest.colliders ?? hair.shown?.about?.colliders ?? null);
   figure.place('head', driver.pose.head);
-  figure.place('body', driver.pose.body);
+  figure.place('body', forest.driveToken ? driver.pose.body : toldBody);
   if (forest.driveToken) {
     made = forest;
-    driver.begin(forest.time_us);
+    driver.begin(hair.time_us);
     hair.show({ name: file?.name ?? settings.style, colliders: forest.colliders });
   } else {
     made = null;
@@ -115,10 +124,14 @@ hair.addEventListener('forest', ({ detail: forest }) => {
   stand();
 });
 
-function takeWheel() {
-  hair.takeWheel();
-  driver.begin(hair.time_us);
-  stand();
+async function takeWheel() {
+  try {
+    await hair.takeWheel();
+    driver.begin(hair.time_us);
+    stand();
+  } catch (error) {
+    failed(error.message);
+  }
 }
 
 function makeFirst() {
@@ -138,12 +151,12 @@ async function makeHair() {
 }
 
 async function destroyAndMake() {
-  const before = hair.forest?.mayDrive ? hair.forest.handle : null;
+  const before = hair.forest?.mayDrive ? hair.forest.handle : null, time = driver.driving ? hair.clock : null; /* as it went, it goes on */
   driver.stop();
   const { head, body } = driver.poseAfter(0);
   try {
     before && await hair.destroy(before).catch(() => {});
-    await hair.create({ style: settings.style, strands: settings.strands, params: settings.params, head, body, ...(file ? { file: file.bytes, name: file.name.slice(-40) } : {}) });
+    await hair.create({ style: settings.style, strands: settings.strands, params: settings.params, head, body, clock: time, ...(file ? { file: file.bytes, name: file.name.slice(-40) } : {}) });
     file && faces.say(`${file.name}: ${made.strands.toLocaleString('en')} strands, ${made.skipped_strands} left out; rebuilt within ${(made.rebuilt_max_m * 1000).toFixed(1)} mm.`);
   } catch (error) {
     failed(file ? `${file.name}: ${error.message}` : error.message);
@@ -232,4 +245,4 @@ stage.run((seconds) => {
 });
 
 /** For the console, and the tests in a browser. */
-globalThis.viewer = { hair, driver, stage, mouse, figure, changed, get settings() { return settings; } };
+globalThis.viewer = { hair, driver, stage, mouse, figure, clock, changed, get settings() { return settings; } };
