@@ -234,7 +234,7 @@ if (settings.motion !== 'mouse') {
 let graphDrawn = 0, drawn = 0;
 stage.run((seconds) => {
   driver.tick(seconds);
-  if (hair.state === 'live') {
+  if (hair.state === 'live' && hair.clock?.mode !== 'paused') { /* a picture that stands still does so altogether */
     stage.follow(hair.object.position, Math.min(seconds - drawn, 0.1));
   }
   drawn = seconds;
