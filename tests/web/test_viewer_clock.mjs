@@ -101,6 +101,7 @@ await test('clock_goes_at_its_rate', async () => {
       Number(detail.time_us - hair.now_us) > slack_us && early.push(Number(detail.time_us - hair.now_us));
     });
   });
+  await choose('free');
   const begin = await slide(0.5);
   equal(begin.shownRate, '0.50 ×', 'what is shown');
   await view.untilIt(({ time_us }) => time_us > begin.time_us + 400000, '0.4 s of simulated time');
@@ -122,6 +123,7 @@ await test('clock_goes_at_its_rate', async () => {
 });
 
 await test('clock_poses_are_of_the_present_and_each_later_than_the_last', async () => {
+  await choose('free');
   const [before, first, second, after] = await view.page.evaluate(() => {
     const { hair, driver: { pose } } = viewer;
     return [hair.now_us, hair.move(pose.head), hair.move(pose.head), hair.now_us].map(Number);
@@ -131,6 +133,7 @@ await test('clock_poses_are_of_the_present_and_each_later_than_the_last', async 
 
 await test('clock_that_runs_free_takes_the_head_along', async () => {
   const hairOf = () => view.page.evaluate(() => [...viewer.hair.hair.uniforms.positions.value.image.data.filter((_, i) => i % 64 < 3)]);
+  await choose('free');
   await view.page.mouse.move(188, 180);
   await view.page.evaluate(() => { viewer.driver.paused = false; });
   const before = await view.picture(), rest = await hairOf(), complaints = await view.text('messages');
@@ -147,6 +150,7 @@ await test('clock_that_runs_free_takes_the_head_along', async () => {
 });
 
 await test('clock_that_is_paused_stands_still', async () => {
+  await choose('free');
   await view.page.evaluate(() => viewer.changed('motion', 'shake'));
   await untilMore(view, 10);
   await choose('paused');
@@ -167,6 +171,7 @@ await test('clock_that_is_paused_stands_still', async () => {
 });
 
 await test('clock_that_is_refused_is_told_and_what_is_so_is_shown', async () => {
+  await choose('free');
   await view.page.evaluate(() => viewer.clock.ask({ rate: 50 }));
   await until(async () => (await view.text('messages')).includes('0.01 to 10'), () => view.text('messages'));
   const time = await timeOf(view);
@@ -176,19 +181,20 @@ await test('clock_that_is_refused_is_told_and_what_is_so_is_shown', async () => 
 });
 
 await test('clock_in_a_second_browser_is_the_same', async () => {
+  await choose('free');
   const second = await View.open(browser, gateway.view, { more: FEW });
   await second.untilLive();
   const seen = await untilTime(second, ({ mode }) => mode === 'free', 'free');
   equal(seen.isThere, false, 'a control that may not be used');
-  check(seen.summary.endsWith('free-running'), seen.summary);
+  check(seen.summary.startsWith('free-running · 300 strands'), seen.summary);
   await untilMore(second, 5);
   await slide(0.5);
-  await untilTime(second, ({ rate, summary }) => rate === 0.5 && summary.endsWith('free-running, 0.5 times as fast'), 'half speed');
+  await untilTime(second, ({ rate, summary }) => rate === 0.5 && summary.startsWith('free-running, 0.5 times as fast · '), 'half speed');
   const refused = await second.page.evaluate(() => viewer.hair.setClock({ mode: 'paused' }).catch(({ code }) => code));
   equal(refused, 'NOT_ALLOWED', 'a viewer that sets the clock');
   equal((await timeOf(second)).mode, 'free', 'what it sees then');
   await choose('paused');
-  await untilTime(second, ({ mode, summary }) => mode === 'paused' && summary.endsWith('paused'), 'the pause');
+  await untilTime(second, ({ mode, summary }) => mode === 'paused' && summary.startsWith('paused · '), 'the pause');
   await choose('lockstep');
   await untilTime(second, ({ mode, summary }) => mode === 'lockstep' && !/paused|free/.test(summary), 'lock-step');
   const { time_us } = await view.knows();
@@ -232,7 +238,7 @@ await test('clock_is_so_again_after_a_restart_of_awtd', async () => {
     for (const page of [view, second]) {
       await page.untilLive();
       const time = await untilTime(page, ({ mode, rate }) => mode === 'free' && rate === 0.5, `the clock again, ${what}`);
-      page === view ? equal(`${time.shown} ${time.shownRate} ${time.isSure}`, 'free-running 0.50 × true', `shown, ${what}`) : check(time.summary.endsWith('0.5 times as fast'), time.summary);
+      page === view ? equal(`${time.shown} ${time.shownRate} ${time.isSure}`, 'free-running 0.50 × true', `shown, ${what}`) : check(time.summary.startsWith('free-running, 0.5 times as fast · '), time.summary);
       await untilMore(page, 5);
     }
   }
@@ -240,6 +246,8 @@ await test('clock_is_so_again_after_a_restart_of_awtd', async () => {
 });
 
 await test('clock_goes_on_when_the_drivers_page_is_closed', async () => {
+  await choose('free');
+  await slide(0.5);
   const second = await View.open(browser, gateway.view, { more: FEW });
   await second.untilLive();
   await view.page.close();

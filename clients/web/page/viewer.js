@@ -34,7 +34,7 @@ function stand() {
   const about = made ? (file?.name ?? settings.style) : String(hair.shown?.about?.name ?? 'hair').slice(0, 64);
   const { strands, points } = hair.stats;
   const hairs = strands ? `${strands.toLocaleString('en')} strands of ${points} points` : '', time = role === 'drives' ? '' : clockText(hair.clock);
-  panel.stand(role, about, [hairs, hair.server, time].filter(Boolean).join(' · ') || '…');
+  panel.stand(role, about, [time, hairs, hair.server].filter(Boolean).join(' · ') || '…');
 }
 
 function paint() {
