@@ -1,4 +1,4 @@
-"""libawtclient by ctypes: its functions, and those of its structs that are used (awtlink.h, awtframes.h)."""
+"""libawtclient by ctypes: its functions, and those of its structs that are used (awtlink.h, awtframes.h, awtclock.h)."""
 
 import ctypes as c
 import ctypes.util
@@ -26,6 +26,10 @@ class Options(c.Structure):
     _fields_ = [("address", c.c_char_p), ("token_file", c.c_char_p), ("token", c.c_char_p), ("name", c.c_char_p),
                 ("timeout_ms", c.c_int), ("queue_bytes", c.c_uint32), ("transport", c.POINTER(Transport)),
                 ("routing_key", c.c_void_p)]
+
+
+class ClockSamples(c.Structure):
+    _fields_ = [("offset_us", c.c_int64 * 16), ("round_us", c.c_int64 * 16), ("count", c.c_uint32)]
 
 
 class Shown(c.Structure):
@@ -62,6 +66,8 @@ def load():
             ("awtclient_close", None, [handle]),
             ("awtclient_send", c.c_bool, [handle, message, error]),
             ("awtclient_receive", c.c_bool, [handle, message, error]),
+            ("awtclock_add", c.c_bool, [c.POINTER(ClockSamples), *[c.c_int64] * 4]),
+            ("awtclock_offset", c.c_bool, [c.POINTER(ClockSamples), *[c.POINTER(c.c_int64)] * 2]),
             ("awtframes_create", handle, [c.c_int64]),
             ("awtframes_destroy", None, [handle]),
             ("awtframes_bind", c.c_bool, [handle, c.c_char_p, c.c_size_t, error]),

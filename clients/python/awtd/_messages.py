@@ -45,6 +45,7 @@ KINDS.update(
     params=list_of(struct("Param", "str name; f32 value"), 64),
     param_infos=list_of(struct("ParamInfo", "str name unit text; f32 value least greatest"), 64),
     style_infos=list_of(struct("StyleInfo", "str name text; u8 levels; u32 finest_nodes; u16 points_per_strand"), 16),
+    step_requests=list_of(struct("StepRequest", "u64 forest; i64 time_us"), 256),
     colliders=list_of(struct("Collider", "u32 id; u8 frame; f32 ax ay az radius_a bx by bz radius_b"), 16),
     collider_poses=list_of(struct("ColliderPose", "u32 id; pose pose"), 16))
 
@@ -67,6 +68,11 @@ STRUCTS = {
     "set_params": struct("SetParams", "u64 forest; params params"),
     "motion": struct("Motion", "u64 forest; u32 epoch sequence; u8 teleport; i64 time_us; pose head body; "
                      "collider_poses colliders"),
+    "set_clock": struct("SetClock", "u64 forest; u8 mode; f32 rate importance"),
+    "set_clock_reply": struct("SetClockReply", "i64 time_us clock_us"),
+    "step_many": struct("StepMany", "u32 deadline_us; u8 kind level attributes; step_requests forests"),
+    "ping": struct("Ping", "i64 sent_us"),
+    "pong": struct("Pong", "i64 sent_us received_us answered_us"),
     "query": struct("Query", "u64 forest; u8 latest; i64 time_us; u8 kind level attributes"),
     "subscribe": struct("Subscribe", "u64 forest; u8 kind level; u16 greatest_rate; u32 credit; u8 deltas; "
                         "u32 budget; u8 attributes"),

@@ -5,17 +5,19 @@ from __future__ import annotations
 import contextlib
 import os
 import ssl as _ssl
-from typing import Callable, Optional, Tuple, Union
+from typing import Callable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from ._messages import Message, put
+from .colliders import Collider, put_colliders
 from .connection import Connection
 from .errors import AwtError
 from .forest import Forest
-from .forms import number
+from .forms import Kind, Level, number
 from .poses import Pose
 from .records import Param, Stats, Style, record
+from .stepping import Stepped, step_many
 from .tls import TlsTransport
 
 _UPS = (None, "y", "z")
@@ -42,13 +44,15 @@ class Client:
                hierarchy: Optional[int] = None, seed: int = 1, name: str = "", points_per_strand: int = 0,
                levels: int = 0, scale: float = 0, up: Optional[str] = None,
                head_centre: Tuple[float, float, float] = (0, 0, 0), head_radius: float = 0, time_us: int = 0,
-               head: Pose = Pose(), body: Pose = Pose(), **params: float) -> Forest:
+               head: Pose = Pose(), body: Pose = Pose(), colliders: Optional[Sequence[Collider]] = None,
+               **params: float) -> Forest:
         """Makes hair of a built-in style (see styles()), or of an upload(), with what of params() is to be otherwise.
 
         Of a style: strands, 0: the style's number; seed: other seeds, other hair. Of an upload: hierarchy, the upload
         of a wisp hierarchy; scale, metres per unit of the file, up, "y" or "z", and the head's centre (3) and radius in
         units of the file: what is left out is guessed. Of both: points_per_strand and levels of the wisp hierarchy, 0:
-        the style's or file's; name, for the log; time_us, head and body (world frame), when and where it is at rest."""
+        the style's or file's; name, for the log; time_us, head and body (world frame), when and where it is at rest;
+        colliders, the obstacles, None: a head and a body."""
         if (style is None) == (upload is None):
             raise ValueError("a style or an upload is wanted, not both")
         request = self._connection.message("CREATE")
@@ -59,6 +63,8 @@ class Client:
             scale=scale, up=number(_UPS, up), head_radius=head_radius, time_us=time_us, progress=1)
         create.head_x, create.head_y, create.head_z = head_centre
         create.head, create.body = head._struct(), body._struct()
+        if colliders is not None:
+            put_colliders(request, colliders)
         request.put_params(create.params, params)
         return self._made(request)
 
@@ -70,6 +76,12 @@ class Client:
         reply = self._connection.call(request).as_.attach_reply
         drive, view = (token, b"") if reply.may_drive else (b"", token)
         return Forest(self._connection, handle, reply.strands, reply.points_per_strand, drive, view)
+
+    def step_many(self, times: Sequence[Tuple[Forest, int]], *, deadline_us: int = 1_000_000, kind: Kind = "strands",
+                  level: Level = "full", attributes: bool = False) -> Stepped:
+        """Brings each forest, all in lock-step, to its simulated time: move() their heads first. What is not ready
+        deadline_us from now comes as it was, stale, and its step goes on. The daemon's workers share the work."""
+        return step_many(self._connection, times, deadline_us, kind, level, attributes)
 
     def upload(self, path: Union[str, os.PathLike], progress: Optional[Callable[[float], None]] = None) -> int:
         """Sends a strand file (cyHair .hair, TressFX .tfx) or a hierarchy; what it gives is for create(). The daemon

@@ -5,16 +5,18 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import os
-from typing import Callable, Dict, Optional, Protocol
+from typing import Callable, Dict, Iterator, Optional, Protocol, Tuple, Union
 
 from . import _library as _l
 from ._messages import Message, put
+from .clock import DaemonClock
 from .errors import CLOSED, PEER, AwtError
 from .tls import TlsTransport
 
 _PIECE = 1 << 20  # bytes of an upload in one message
 _BAD_UPLOAD = 206  # errors.def
-_ANSWERS = {"QUERY": "FRAME", "RESTORE": "CREATE_REPLY"}  # where it is not the request's name and _REPLY
+# Where the answer is not named as its request and _REPLY.
+_ANSWERS = {"QUERY": "FRAME", "STEP_MANY": "FRAME", "RESTORE": "CREATE_REPLY", "PING": "PONG"}
 
 
 class Listener(Protocol):
@@ -40,6 +42,7 @@ class Connection:
         self._client, self._transport = None, transport
         self.timeout_s = timeout_s
         self.library = _l.load()
+        self.clock = DaemonClock(self.library, self._ping)
         self.listeners: Dict[int, Listener] = {}  # by the request that they made
         error = _l.Error()
         options = _l.Options(address=address.encode(), token_file=os.fsencode(token_file) if token_file else None,
@@ -87,17 +90,28 @@ class Connection:
 
     def call(self, request: Message) -> Message:
         """Sends a request and gives its answer. Texts and blobs in it are good until the next message."""
+        answer = next(self.answers(request))
+        if isinstance(answer, AwtError):
+            raise answer
+        return answer
+
+    def answers(self, request: Message) -> Iterator[Union[Message, AwtError]]:
+        """Sends a request and gives its answers, without end; what each holds is good until the next."""
         name = self.library.proto_type_name(request.type).decode()
         wanted = _ANSWERS.get(name, name + "_REPLY")
         self.send(request)
         while True:
             answer = self.receive()
-            if answer.type == _l.TYPES["ERROR"] and answer.request in (request.request, 0):
+            if answer.type == _l.TYPES["ERROR"] and answer.request == 0:
                 raise refusal(answer)
-            if answer.request == request.request and answer.type != _l.TYPES["PROGRESS"]:
-                if answer.type != _l.TYPES[wanted]:
-                    raise AwtError(PEER, f"the other end answered {name} with something else than {wanted}")
-                return answer
+            if answer.request != request.request or answer.type == _l.TYPES["PROGRESS"]:
+                continue
+            if answer.type == _l.TYPES["ERROR"]:
+                yield refusal(answer)
+            elif answer.type == _l.TYPES[wanted]:
+                yield answer
+            else:
+                raise AwtError(PEER, f"the other end answered {name} with something else than {wanted}")
 
     # The library's awtclient_upload leaves out the frames that come meanwhile; here they go to their subscriptions.
     def upload(self, number: int, content: bytes, heard: Optional[Callable[[float], None]] = None) -> None:
@@ -124,6 +138,12 @@ class Connection:
         upload.sha256[:] = digest
         upload.piece.bytes, upload.piece.length = request.keep(piece), len(piece)
         return self.call(request).as_.upload_reply.received
+
+    def _ping(self, sent_us: int) -> Tuple[int, int]:
+        request = self.message("PING")
+        request.as_.ping.sent_us = sent_us
+        pong = self.call(request).as_.pong
+        return pong.received_us, pong.answered_us
 
     def _open(self) -> int:
         if not self._client:

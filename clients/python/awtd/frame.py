@@ -13,17 +13,25 @@ from .decoder import Decoder
 from .errors import PEER, AwtError
 from .forms import KINDS, LEVELS
 
-_COUNTED = ("time_us", "sequence", "base", "active_nodes", "splits", "merges", "step_us", "encode_us",
-            "kinetic_energy_j", "age_us", "skipped")
+_STALE = 1  # of FRAME's flags
+_COUNTED = ("time_us", "sequence", "base", "age_us", "skipped", "active_nodes", "splits", "merges", "steps",
+            "unreached_contacts", "clamped_speeds", "link_error", "kinetic_energy_j", "queue_us", "step_us",
+            "encode_us", "last_write_us")
 
 
 class FrameBase:
     """What frames of all kinds have.
 
     kind and level: what it shows, by name. time_us: simulated time. sequence: its number among the forest's frames.
-    glb: the file's bytes; base not 0: it is a delta against the frame of that sequence. age_us: between the end of its
-    step and its writing. skipped: frames that found no credit before it. And what the daemon counted in this advance:
-    active_nodes, splits, merges, step_us and encode_us (microseconds of work), kinetic_energy_j (joules).
+    glb: the file's bytes; base not 0: it is a delta against the frame of that sequence. stale: it is older than was
+    asked for, or than it should be. age_us: between the end of its step and its writing. skipped: frames that found no
+    credit before it.
+
+    What the daemon counted in this advance: active_nodes, splits and merges of the wisp trees, steps (sub-steps),
+    unreached_contacts (nodes that their link kept inside an obstacle), clamped_speeds (nodes at the speed limit),
+    link_error (the greatest |length / target - 1| of the links), kinetic_energy_j (joules, relative to the head). And
+    where the time went, microseconds: queue_us (it waited for a worker), step_us, encode_us (of work), last_write_us
+    (from the first byte to the last of the frame before it on this connection; 0: none).
     """
 
     kind: str
@@ -31,14 +39,21 @@ class FrameBase:
     time_us: int
     sequence: int
     base: int
+    stale: bool
+    age_us: int
+    skipped: int
     active_nodes: int
     splits: int
     merges: int
+    steps: int
+    unreached_contacts: int
+    clamped_speeds: int
+    link_error: float
+    kinetic_energy_j: float
+    queue_us: int
     step_us: int
     encode_us: int
-    kinetic_energy_j: float
-    age_us: int
-    skipped: int
+    last_write_us: int
     glb: bytes
 
     def __init__(self, message: Message, kind: str, numbers: bool = False) -> None:
@@ -49,6 +64,7 @@ class FrameBase:
         self.kind, self.level = kind, LEVELS[frame.level]
         for name in _COUNTED:
             setattr(self, name, getattr(frame, name))
+        self.stale = bool(frame.flags & _STALE)
         self.glb = bytes(frame.glb)
         self._alone = not numbers and self.base == 0
 
