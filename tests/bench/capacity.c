@@ -1,8 +1,8 @@
 /* capacity.c: awt-bench capacity: the cost model of a daemon: see capacity.h.
  *
- * A head costs a core, each second, 100 steps, and for each of 60 frames the sections, the strands of the level, the
- * encoding and a write to each viewer. What moves is evaluated and encoded whole; of what is at rest nothing is
- * evaluated, and every patch is the one of the frame before. Reading the requests and the way through the scheduler are
+ * A head costs a core, each second, 100 steps, and for each of its frames, 60 where it moves and 4 at rest, what
+ * drawing takes and a write to each viewer. Steps and drawing are measured among several heads (capacity_heads.c); the
+ * parts of a frame, by themselves, say where its time goes. Reading the requests and the way through the scheduler are
  * not in it: what a daemon holds is less. */
 #include "bench/capacity.h"
 
@@ -18,23 +18,11 @@ static size_t subject_of(geom_kind kind, geom_level level)
     return 2 * (size_t)level + (kind == GEOM_STRANDS);
 }
 
-const encode_row *capacity_frame(const capacity_row *row, geom_kind kind, geom_level level, encode_moving moving)
-{
-    return &row->rows[subject_of(kind, level) * ENCODE_MOVINGS + moving];
-}
-
-static double frame_ms(const capacity_plan *plan, const capacity_row *row, encode_moving moving)
-{
-    const encode_row *frame = capacity_frame(row, plan->kind, plan->level, moving);
-    const double write_ms = row->write_ms[subject_of(plan->kind, plan->level)] * plan->viewers;
-    const double strands_ms = moving == ENCODE_NONE ? 0 : row->guides_ms + frame->evaluate_ms;
-    return strands_ms + frame->encode_ms + write_ms;
-}
-
 void capacity_sum_up(const capacity_plan *plan, capacity_row *row)
 {
-    row->moving_ms = CAPACITY_STEP_RATE * row->step_awake_ms + ENCODE_FRAME_RATE * frame_ms(plan, row, ENCODE_ALL);
-    row->still_ms = CAPACITY_STEP_RATE * row->step_asleep_ms + ENCODE_FRAME_RATE * frame_ms(plan, row, ENCODE_NONE);
+    const double write_ms = row->write_ms[subject_of(plan->kind, plan->level)] * plan->viewers;
+    row->moving_ms = CAPACITY_STEP_RATE * row->awake.step_ms + ENCODE_FRAME_RATE * (row->awake.frame_ms + write_ms);
+    row->still_ms = CAPACITY_STEP_RATE * row->asleep.step_ms + CAPACITY_REST_RATE * (row->asleep.frame_ms + write_ms);
     for (int k = 0; k < CAPACITY_SHARES; k++) {
         const double share = CAPACITY_MOVING[k];
         row->heads[k] = 1e3 / (share * row->moving_ms + (1 - share) * row->still_ms);
@@ -64,32 +52,44 @@ static bool clip_of(const char *name, motion *clip, awt_error *error)
     return false;
 }
 
-/* Bowing for 5 s without a rest, then the lean of 10 s, whose last second is sleep. */
-static bool measure_steps(const awt_groom *groom, capacity_row *row, awt_error *error)
+/* While it bows, begun a second before without a rest; and the last second of the lean, which is sleep. */
+static bool measure_heads(const capacity_plan *plan, const awt_groom *groom, capacity_row *row, awt_error *error)
 {
     static const struct {
         const char *clip;
-        int64_t length_us;
-    } passes[] = {{"lean-forever", 5000000}, {"lean", 10000000}};
-    bench_figures figures[2];
-    awt_groom_info info;
+        int64_t begin_us, end_us;
+    } passes[] = {{"lean-forever", 1500000, 4500000}, {"lean", 9000000, 10000000}};
+    capacity_head *const found[] = {&row->awake, &row->asleep};
     for (int k = 0; k < 2; k++) {
         motion clip;
         if (!clip_of(passes[k].clip, &clip, error)) {
             return false;
         }
-        bench_pass pass = {row->style->name, groom, row->style->params, &clip, passes[k].length_us, 1};
-        awt_status status = bench_run(&pass, &figures[k], error);
+        capacity_pass pass = {groom,      row->style->params, &clip, passes[k].begin_us, passes[k].end_us,
+                              plan->kind, plan->level};
+        awt_status status = capacity_measure_heads(&pass, found[k], error);
         motion_fini(&clip);
         if (status != AWT_OK) {
             return false;
         }
     }
-    awt_groom_get_info(groom, &info);
-    row->step_awake_ms = figures[0].step_ms.mean;
-    row->step_asleep_ms = figures[1].last_second_ms;
-    row->guides_ms = figures[0].guide_ns * info.finest_nodes * 1e-6;
     return true;
+}
+
+static bool measure_sections(const awt_groom *groom, capacity_row *row, awt_error *error)
+{
+    motion clip;
+    bench_figures figures = {0};
+    awt_groom_info info;
+    if (!clip_of("lean-forever", &clip, error)) {
+        return false;
+    }
+    bench_pass pass = {row->style->name, groom, row->style->params, &clip, 2000000, 1};
+    awt_status status = bench_run(&pass, &figures, error);
+    motion_fini(&clip);
+    awt_groom_get_info(groom, &info);
+    row->guides_ms = figures.guide_ns * info.finest_nodes * 1e-6;
+    return status == AWT_OK;
 }
 
 static bool measure_frames(const capacity_plan *plan, capacity_row *row, awt_error *error)
@@ -122,8 +122,8 @@ static bool measure(const capacity_plan *plan, const awt_style *style, capacity_
     awt_error error = {0};
     awt_groom *groom = NULL;
     *row = (capacity_row){.style = style};
-    bool done = grow(plan, style, &groom, &error) == AWT_OK && measure_steps(groom, row, &error) &&
-                measure_frames(plan, row, &error);
+    bool done = grow(plan, style, &groom, &error) == AWT_OK && measure_heads(plan, groom, row, &error) &&
+                measure_sections(groom, row, &error) && measure_frames(plan, row, &error);
     awt_groom_destroy(groom);
     if (done) {
         capacity_sum_up(plan, row);

@@ -4,7 +4,12 @@
 
 #include "bench/encode.h"
 
-enum { CAPACITY_STYLES = 4, CAPACITY_SHARES = 3, CAPACITY_STEP_RATE = 100 };
+enum {
+    CAPACITY_STYLES = 4,
+    CAPACITY_SHARES = 3,
+    CAPACITY_STEP_RATE = 100, /* of free-running forests; */
+    CAPACITY_REST_RATE = 4    /* and of their frames at rest (PROTOCOL.md) */
+};
 
 /* Which frames go out, for whom the heads are counted. */
 typedef struct capacity_plan {
@@ -16,11 +21,27 @@ typedef struct capacity_plan {
     const char *json; /* file, "-" or NULL */
 } capacity_plan;
 
+/* What one of several heads costs, milliseconds of one core: a step of 10 ms, and a frame with all that belongs to it,
+ * from the hair between two steps to the bytes. */
+typedef struct capacity_head {
+    double step_ms, frame_ms;
+} capacity_head;
+
+/* Heads alike that go through a clip, and between which times they are measured: a frame or more after its begin. */
+typedef struct capacity_pass {
+    const awt_groom *groom;
+    awt_params params;
+    const motion *clip;
+    int64_t begin_us, end_us;
+    geom_kind kind;
+    geom_level level;
+} capacity_pass;
+
 /* What one style costs, milliseconds of one core. */
 typedef struct capacity_row {
     const awt_style *style;
-    double step_awake_ms, step_asleep_ms; /* of 10 ms: bowing all the time, and at rest */
-    double guides_ms;                     /* sections of the finest wisps, of which strands are made */
+    capacity_head awake, asleep; /* of the plan's frames: bowing all the time, and at rest */
+    double guides_ms;            /* sections of the finest wisps, of which strands are made */
     encode_row rows[ENCODE_ROWS];
     guides_row guides[GUIDES_KINDS];
     double write_ms[ENCODE_SUBJECTS]; /* of a whole frame of each kind and level, to one viewer */
@@ -30,10 +51,11 @@ typedef struct capacity_row {
 
 extern const double CAPACITY_MOVING[CAPACITY_SHARES];
 
-/* The row of whole frames of a kind and level. */
-const encode_row *capacity_frame(const capacity_row *row, geom_kind kind, geom_level level, encode_moving moving);
 /* From the parts to moving_ms, still_ms and heads. */
 void capacity_sum_up(const capacity_plan *plan, capacity_row *row);
+
+/* Of several heads in one thread, by turns. AWT_NO_MEMORY, AWT_LIMIT (too many points), or what the forest says. */
+awt_status capacity_measure_heads(const capacity_pass *pass, capacity_head *out, awt_error *error);
 
 /* Processor time of this thread, ms, for one write of so many bytes to a TCP connection of the loopback that is being
  * read. < 0: no socket. */

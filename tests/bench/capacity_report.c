@@ -16,8 +16,9 @@ static const char *const LEVELS[] = {"full", "fifth", "guides"};
 
 static void table_parts(FILE *text, const capacity_row *row)
 {
-    fprintf(text, "%-10s step awake %.3f, asleep %.3f; sections %.3f ms\n", row->style->name, row->step_awake_ms,
-            row->step_asleep_ms, row->guides_ms);
+    fprintf(text, "%-10s step awake %.3f, asleep %.3f; frame moving %.3f, at rest %.3f; of it sections %.3f ms\n",
+            row->style->name, row->awake.step_ms, row->asleep.step_ms, row->awake.frame_ms, row->asleep.frame_ms,
+            row->guides_ms);
     fputs("  kind     level  | strands, ms  encode, moving  at rest  write | bytes\n", text);
     for (size_t k = 0; k < ENCODE_SUBJECTS; k++) {
         const encode_row *all = &row->rows[k * ENCODE_MOVINGS], *none = all + ENCODE_NONE;
@@ -36,12 +37,15 @@ static void table_parts(FILE *text, const capacity_row *row)
 
 static void table(FILE *text, const capacity_plan *plan, const capacity_row rows[CAPACITY_STYLES])
 {
-    fprintf(text, "%u strands, one core, medians\n\n", plan->strands);
+    fprintf(
+        text,
+        "%u strands, one core; steps and frames (%s, %s) among several heads, means; their parts alone, medians\n\n",
+        plan->strands, KINDS[plan->kind], LEVELS[plan->level]);
     for (size_t k = 0; k < CAPACITY_STYLES; k++) {
         table_parts(text, &rows[k]);
     }
-    fprintf(text, "\n%d frames of %s, %s, to %u viewers and %d steps a second:\n", ENCODE_FRAME_RATE, KINDS[plan->kind],
-            LEVELS[plan->level], plan->viewers, CAPACITY_STEP_RATE);
+    fprintf(text, "\n%d frames of %s, %s (at rest %d), to %u viewers and %d steps a second:\n", ENCODE_FRAME_RATE,
+            KINDS[plan->kind], LEVELS[plan->level], CAPACITY_REST_RATE, plan->viewers, CAPACITY_STEP_RATE);
     fputs("           | ms a second of a head | heads a core, of which move\n"
           "style      |     moving    at rest |    none     10 %    100 %\n",
           text);
@@ -81,8 +85,10 @@ static void json_row(jsonout *j, const capacity_row *row)
 {
     jsonout_object(j, NULL);
     jsonout_text(j, "style", row->style->name);
-    jsonout_real(j, "step_awake_ms", row->step_awake_ms);
-    jsonout_real(j, "step_asleep_ms", row->step_asleep_ms);
+    jsonout_real(j, "step_awake_ms", row->awake.step_ms);
+    jsonout_real(j, "step_asleep_ms", row->asleep.step_ms);
+    jsonout_real(j, "frame_moving_ms", row->awake.frame_ms);
+    jsonout_real(j, "frame_still_ms", row->asleep.frame_ms);
     jsonout_real(j, "sections_ms", row->guides_ms);
     jsonout_array(j, "frames");
     for (size_t k = 0; k < ENCODE_SUBJECTS; k++) {

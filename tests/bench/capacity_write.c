@@ -56,13 +56,6 @@ static bool write_all(int descriptor, const char *bytes, size_t size)
     return true;
 }
 
-static double processor_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
-
 double capacity_write_ms(size_t bytes)
 {
     double times[WRITE_REPEATS], median = -1;
@@ -76,9 +69,9 @@ double capacity_write_ms(size_t bytes)
     if (pthread_create(&reader, NULL, reader_run, &ends[1]) == 0) {
         bool good = true;
         for (int n = 0; n < WRITE_REPEATS && good; n++) {
-            double begin = processor_ms();
+            double begin = bench_thread_ms();
             good = write_all(ends[0], frame, bytes);
-            times[n] = processor_ms() - begin;
+            times[n] = bench_thread_ms() - begin;
         }
         shutdown(ends[0], SHUT_WR);
         pthread_join(reader, NULL);

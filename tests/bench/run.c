@@ -13,7 +13,6 @@
 #include <inttypes.h>
 #include <pthread.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { WARM_UP_STEPS = 50, EVALUATIONS = 31 };
 
@@ -30,14 +29,6 @@ typedef struct worker {
     awt_status status;
     awt_error error;
 } worker;
-
-/* Processor time of this thread: what a step costs, whatever else the machine does meanwhile. */
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 awt_params bench_single_level(awt_params params)
 {
@@ -91,9 +82,9 @@ static void *worker_run(void *argument)
     }
     w->figures.merged_at_s = -1;
     for (size_t n = 0; n < w->steps && w->status == AWT_OK; n++) {
-        double begin = now_ms();
+        double begin = bench_thread_ms();
         w->status = step_to(w, (int64_t)(n + 1) * AWT_STEP_US, &stats);
-        w->step_ms[n] = now_ms() - begin;
+        w->step_ms[n] = bench_thread_ms() - begin;
         count_step(w, info.coarse_nodes, &stats);
         show_step(w, n, &stats);
     }
@@ -183,12 +174,12 @@ static awt_status evaluate(const awt_forest *forest, bench_figures *out, awt_err
     }
     float *frames = centres + 3 * (size_t)info.finest_nodes, *scratch = frames + 4 * (size_t)info.finest_nodes;
     for (int n = 0; n < EVALUATIONS; n++) {
-        double begin = now_ms();
+        double begin = bench_thread_ms();
         awt_forest_guides(forest, centres, frames);
-        double between = now_ms();
+        double between = bench_thread_ms();
         awt_groom_strands(groom, centres, frames, scratch, scratch + scratch_floats);
         guides_ms[n] = between - begin;
-        strands_ms[n] = now_ms() - between;
+        strands_ms[n] = bench_thread_ms() - between;
     }
     free(centres);
     quantile_sort(guides_ms, EVALUATIONS);

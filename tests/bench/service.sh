@@ -199,7 +199,7 @@ if wanted 6; then
         settle=15
         [ $share = 1 ] && settle=3
         heads $share lean-forever $settle
-        echo "long style, $share of the heads moving: $held held on $cores cores, of which their viewers took $viewers; the cost model says ${1:-?} a core: $(awk -v a="${1:-0}" -v c="$cores" -v v="$viewers" 'BEGIN { printf "%d", a * (c - v) }')"
+        echo "long style, $share of the heads moving: $held held on $cores cores, of which their viewers took $viewers; the cost model says ${1:-?} a core: $(awk -v a="${1:-0}" -v c="$cores" -v v="$viewers" 'BEGIN { s = 0.8 * c; printf "%d", a * (c - v < s ? c - v : s) }')"
         [ $# -gt 0 ] && shift
     done
     heads 1 jump 3
