@@ -28,23 +28,34 @@ suite() {
     count build/suite.log
 }
 
-# shared NAME TESTS: the suite of a program that can share its tests among processes, by as many as there are processors.
-shared() {
-    echo "== $1"
+# run_shares TESTS LOG: a program whose tests can be shared, by as many processes as there are processors.
+run_shares() {
     n=0 processes=
     while [ "$n" -lt "$jobs" ]; do
-        AWT_SHARE=$n/$jobs "$2" >build/suite-$n.log 2>&1 &
+        AWT_SHARE=$n/$jobs "$1" >build/"$2"-$n.log 2>&1 &
         processes="$processes $!"
         n=$((n + 1))
     done
     wait $processes
+    return 0 # what failed is in the logs
+}
+
+# tell_shares LOG: shows and counts what they wrote.
+tell_shares() {
     n=0
     while [ "$n" -lt "$jobs" ]; do
-        cat build/suite-$n.log >>"$log"
-        grep -v '^ok  ' build/suite-$n.log | tail -n 60
-        count build/suite-$n.log
+        cat build/"$1"-$n.log >>"$log"
+        grep -v '^ok  ' build/"$1"-$n.log | tail -n 60
+        count build/"$1"-$n.log
         n=$((n + 1))
     done
+}
+
+# shared NAME TESTS: the suite of a program that can share its tests.
+shared() {
+    echo "== $1"
+    run_shares "$2" suite
+    tell_shares suite
 }
 
 # build ARGUMENTS...: programs and tests of one configuration; a build that fails ends everything.
@@ -56,16 +67,26 @@ build() {
     exit 1
 }
 
-# build_beside ARGUMENTS...: the same in the background, while suites run, for these leave much of the machine idle;
-# build_joined waits for it.
-build_beside() {
-    echo "== building $* beside what follows"
-    nice make --no-print-directory -j"$jobs" all tests-binary "$@" >build/make-beside.log 2>&1 &
-    beside=$!
+# shared_beside NAME TESTS ARGUMENTS...: builds that configuration and runs its tests, in the background, while suites run
+# that leave much of the machine idle; shared_joined waits for them, shows and counts.
+shared_beside() {
+    beside=$1 tests_beside=$2
+    shift 2
+    echo "== building $* and running its tests beside what follows"
+    rm -f build/beside-*.log
+    {
+        nice make --no-print-directory -j"$jobs" all tests-binary "$@" >build/make-beside.log 2>&1 &&
+            run_shares "$tests_beside" beside
+    } &
+    process_beside=$!
 }
 
-build_joined() {
-    wait "$beside" && return
+shared_joined() {
+    echo "== $beside"
+    if wait "$process_beside"; then
+        tell_shares beside
+        return
+    fi
     grep -v '^  [A-Z]* ' build/make-beside.log | tail -n 40
     echo "0 passed, 1 failed"
     exit 1

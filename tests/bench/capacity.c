@@ -65,8 +65,14 @@ static bool measure_heads(const capacity_plan *plan, const awt_groom *groom, cap
         if (!clip_of(passes[k].clip, &clip, error)) {
             return false;
         }
-        capacity_pass pass = {groom,      row->style->params, &clip, passes[k].begin_us, passes[k].end_us,
-                              plan->kind, plan->level};
+        const capacity_pass pass = {.groom = groom,
+                                    .params = row->style->params,
+                                    .heads = plan->heads,
+                                    .clip = &clip,
+                                    .begin_us = passes[k].begin_us,
+                                    .end_us = passes[k].end_us,
+                                    .kind = plan->kind,
+                                    .level = plan->level};
         awt_status status = capacity_measure_heads(&pass, found[k], error);
         motion_fini(&clip);
         if (status != AWT_OK) {
@@ -147,13 +153,31 @@ static int choice(const char *of, const char *name, const char *const *names, in
     return -1;
 }
 
+/* All styles, or the one of that name. */
+static bool choose_styles(const char *name, capacity_plan *plan)
+{
+    plan->end = CAPACITY_STYLES;
+    while (name && plan->first < CAPACITY_STYLES && strcmp(awt_style_at(plan->first)->name, name) != 0) {
+        plan->first++;
+    }
+    if (plan->first == CAPACITY_STYLES) {
+        fprintf(stderr, "awt-bench capacity: there is no built-in style \"%s\"\n", name);
+    } else if (name) {
+        plan->end = plan->first + 1;
+    }
+    return plan->first < CAPACITY_STYLES;
+}
+
 static bool plan_read(int argc, char *const *argv, capacity_plan *plan, int *code)
 {
     static const char *const levels[] = {"full", "fifth", "guides"}, *const kinds[] = {"ribbon", "strands"};
     const char *kind = "strands", *level = "fifth";
-    long long strands = AWT_DEFAULT_STRANDS, frames = 10, viewers = 1;
+    const char *style = NULL;
+    long long strands = AWT_DEFAULT_STRANDS, frames = 10, viewers = 1, heads = 8;
     *plan = (capacity_plan){0};
     const option options[] = {
+        {"style", OPTION_TEXT, "NAME", &style, 0, 0, "one style alone"},
+        {"heads", OPTION_INTEGER, "N", &heads, 1, CAPACITY_MAX_HEADS, "that a worker takes by turns"},
         {"strands", OPTION_INTEGER, "N", &strands, 1, AWT_MAX_STRANDS, "strands of each style"},
         {"frames", OPTION_INTEGER, "N", &frames, 1, ENCODE_MAX_FRAMES, "frames to encode for each median"},
         {"kind", OPTION_TEXT, "KIND", &kind, 0, 0, "of the frames that heads are counted with: ribbon or strands"},
@@ -173,9 +197,10 @@ static bool plan_read(int argc, char *const *argv, capacity_plan *plan, int *cod
     plan->kind = kind_at == 1 ? GEOM_STRANDS : GEOM_RIBBON;
     plan->level = (geom_level)level_at;
     plan->strands = (uint32_t)strands;
+    plan->heads = (uint32_t)heads;
     plan->frames = (uint32_t)frames;
     plan->viewers = (uint32_t)viewers;
-    return kind_at >= 0 && level_at >= 0;
+    return kind_at >= 0 && level_at >= 0 && choose_styles(style, plan);
 }
 
 int bench_capacity(int argc, char *const *argv)
@@ -186,7 +211,7 @@ int bench_capacity(int argc, char *const *argv)
     if (!plan_read(argc, argv, &plan, &code)) {
         return code;
     }
-    for (size_t k = 0; k < CAPACITY_STYLES; k++) {
+    for (size_t k = plan.first; k < plan.end; k++) {
         if (!measure(&plan, awt_style_at(k), &rows[k])) {
             return 1;
         }

@@ -8,17 +8,20 @@ enum {
     CAPACITY_STYLES = 4,
     CAPACITY_SHARES = 3,
     CAPACITY_STEP_RATE = 100, /* of free-running forests; */
-    CAPACITY_REST_RATE = 4    /* and of their frames at rest (PROTOCOL.md) */
+    CAPACITY_REST_RATE = 4,   /* and of their frames at rest (PROTOCOL.md) */
+    CAPACITY_MAX_HEADS = 64
 };
 
 /* Which frames go out, for whom the heads are counted. */
 typedef struct capacity_plan {
     uint32_t strands;
+    uint32_t heads;  /* by turns in one thread, 1 .. CAPACITY_MAX_HEADS */
     uint32_t frames; /* encoded for each median */
     geom_kind kind;
     geom_level level;
-    uint32_t viewers; /* that each frame is written to */
-    const char *json; /* file, "-" or NULL */
+    uint32_t viewers;  /* that each frame is written to */
+    size_t first, end; /* the styles, first .. end - 1 */
+    const char *json;  /* file, "-" or NULL */
 } capacity_plan;
 
 /* What one of several heads costs, milliseconds of one core: a step of 10 ms, and a frame with all that belongs to it,
@@ -31,6 +34,7 @@ typedef struct capacity_head {
 typedef struct capacity_pass {
     const awt_groom *groom;
     awt_params params;
+    uint32_t heads; /* 1 .. CAPACITY_MAX_HEADS */
     const motion *clip;
     int64_t begin_us, end_us;
     geom_kind kind;
@@ -61,7 +65,8 @@ awt_status capacity_measure_heads(const capacity_pass *pass, capacity_head *out,
  * read. < 0: no socket. */
 double capacity_write_ms(size_t bytes);
 
-/* Prints the table, and writes JSON where the plan wants it. False: why has been said. */
-bool capacity_report(const capacity_plan *plan, const capacity_row rows[CAPACITY_STYLES]);
+/* Prints the table of the plan's styles, whose rows these are, and writes JSON where it wants it. False: why has been
+ * said. */
+bool capacity_report(const capacity_plan *plan, const capacity_row *rows);
 
 #endif

@@ -10,7 +10,7 @@
 
 #include <stdlib.h>
 
-enum { HEADS = 8, RUN_IN_FRAMES = 6 }; /* drawn before anything is counted */
+enum { RUN_IN_FRAMES = 6 }; /* drawn before anything is counted */
 
 static const int64_t SECOND_US = 1000000;
 
@@ -25,7 +25,7 @@ typedef struct head {
 typedef struct heads {
     const capacity_pass *pass;
     wishes wanted;
-    head list[HEADS];
+    head list[CAPACITY_MAX_HEADS];
     uint32_t count;
     double step_ms, frame_ms;
     uint32_t steps, frames;
@@ -116,7 +116,7 @@ awt_status capacity_measure_heads(const capacity_pass *pass, capacity_head *out,
     heads h = {.pass = pass};
     awt_status status = AWT_OK;
     wishes_add(&h.wanted, (view_name){.form = form_find((uint8_t)pass->kind, (uint8_t)pass->level, 0)});
-    while (h.count < HEADS && status == AWT_OK) {
+    while (h.count < pass->heads && status == AWT_OK) {
         status = add_head(&h, error);
     }
     status = status == AWT_OK ? run(&h, error) : status;

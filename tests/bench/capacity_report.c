@@ -35,13 +35,12 @@ static void table_parts(FILE *text, const capacity_row *row)
             delta[ENCODE_NONE].encode_ms, "", delta->bytes_per_point * (double)delta->points);
 }
 
-static void table(FILE *text, const capacity_plan *plan, const capacity_row rows[CAPACITY_STYLES])
+static void table(FILE *text, const capacity_plan *plan, const capacity_row *rows)
 {
-    fprintf(
-        text,
-        "%u strands, one core; steps and frames (%s, %s) among several heads, means; their parts alone, medians\n\n",
-        plan->strands, KINDS[plan->kind], LEVELS[plan->level]);
-    for (size_t k = 0; k < CAPACITY_STYLES; k++) {
+    fprintf(text, "%u strands, one core; steps and frames (%s, %s) of %u heads by turns, means; ", plan->strands,
+            KINDS[plan->kind], LEVELS[plan->level], plan->heads);
+    fputs("parts of frames alone, medians\n\n", text);
+    for (size_t k = plan->first; k < plan->end; k++) {
         table_parts(text, &rows[k]);
     }
     fprintf(text, "\n%d frames of %s, %s (at rest %d), to %u viewers and %d steps a second:\n", ENCODE_FRAME_RATE,
@@ -49,7 +48,7 @@ static void table(FILE *text, const capacity_plan *plan, const capacity_row rows
     fputs("           | ms a second of a head | heads a core, of which move\n"
           "style      |     moving    at rest |    none     10 %    100 %\n",
           text);
-    for (size_t k = 0; k < CAPACITY_STYLES; k++) {
+    for (size_t k = plan->first; k < plan->end; k++) {
         const capacity_row *row = &rows[k];
         fprintf(text, "%-10s | %10.2f %10.2f | %7.1f  %7.1f  %7.1f\n", row->style->name, row->moving_ms, row->still_ms,
                 row->heads[0], row->heads[1], row->heads[2]);
@@ -107,18 +106,19 @@ static void json_row(jsonout *j, const capacity_row *row)
     jsonout_close(j);
 }
 
-static bool json_to(FILE *file, const capacity_plan *plan, const capacity_row rows[CAPACITY_STYLES])
+static bool json_to(FILE *file, const capacity_plan *plan, const capacity_row *rows)
 {
     jsonout j = jsonout_begin(file);
     jsonout_object(&j, NULL);
     jsonout_text(&j, "version", AWTD_VERSION);
     jsonout_unsigned(&j, "strands", plan->strands);
+    jsonout_unsigned(&j, "heads", plan->heads);
     jsonout_text(&j, "kind", KINDS[plan->kind]);
     jsonout_text(&j, "level", LEVELS[plan->level]);
     jsonout_unsigned(&j, "viewers", plan->viewers);
     jsonout_reals(&j, "moving", CAPACITY_MOVING, CAPACITY_SHARES);
     jsonout_array(&j, "styles");
-    for (size_t k = 0; k < CAPACITY_STYLES; k++) {
+    for (size_t k = plan->first; k < plan->end; k++) {
         json_row(&j, &rows[k]);
     }
     jsonout_close(&j);
@@ -127,7 +127,7 @@ static bool json_to(FILE *file, const capacity_plan *plan, const capacity_row ro
 }
 
 /* To standard output, or to a file whole or not at all. */
-static bool json_write(const capacity_plan *plan, const capacity_row rows[CAPACITY_STYLES])
+static bool json_write(const capacity_plan *plan, const capacity_row *rows)
 {
     char *text = NULL, error[512] = "not enough memory for the JSON text";
     size_t size = 0;
@@ -144,7 +144,7 @@ static bool json_write(const capacity_plan *plan, const capacity_row rows[CAPACI
     return done;
 }
 
-bool capacity_report(const capacity_plan *plan, const capacity_row rows[CAPACITY_STYLES])
+bool capacity_report(const capacity_plan *plan, const capacity_row *rows)
 {
     table(plan->json && strcmp(plan->json, "-") == 0 ? stderr : stdout, plan, rows);
     return !plan->json || json_write(plan, rows);
