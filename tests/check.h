@@ -35,6 +35,10 @@ const char *check_data(const char *relative);
 /* The folder of the running tests, where the same build's programs are. */
 const char *check_build_directory(void);
 
+/* How many of `all` rounds of the same to go: all of them, but a third, and one at least, under a sanitizer, where each
+ * takes five times as long and is there for its memory, not for its numbers. */
+int check_rounds(int all);
+
 /* A whole file in heap memory, or NULL. */
 unsigned char *check_read_file(const char *path, size_t *size);
 /* Writes the file FOLDER/NAMEENDING, which other programs' checks read; that it is whole is checked. */

@@ -128,6 +128,23 @@ void check_write_file(const char *folder, const char *name, const char *ending, 
     CHECK(file && fclose(file) == 0);
 }
 
+#if defined(__has_feature)
+#define HAS_FEATURE(name) __has_feature(name)
+#else
+#define HAS_FEATURE(name) 0
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || HAS_FEATURE(address_sanitizer) || \
+    HAS_FEATURE(thread_sanitizer)
+enum { SHARE_OF_ROUNDS = 3 };
+#else
+enum { SHARE_OF_ROUNDS = 1 };
+#endif
+
+int check_rounds(int all)
+{
+    return (all + SHARE_OF_ROUNDS - 1) / SHARE_OF_ROUNDS;
+}
+
 const char *check_build_directory(void)
 {
     return build_directory;

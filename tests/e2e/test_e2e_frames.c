@@ -130,7 +130,7 @@ TEST(e2e_decoded_frames_are_what_core_computes_for_the_same_inputs)
         if (forest) {
             double step = quantisation_step(&answer);
             uint32_t splits = 0;
-            for (int n = 1; n <= FRAMES; n++) {
+            for (int n = 1; n <= check_rounds(FRAMES); n++) {
                 awt_step_stats stats;
                 fixture_advance(forest, fixture_clip("jump"), frame_time(n), zero, zero, &stats);
                 proto_message frame;

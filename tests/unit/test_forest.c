@@ -82,7 +82,7 @@ TEST(rigid_links_keep_their_length_and_roots_ride_the_head_in_every_clip)
         hair_read(&start, f);
         double worst_link = 0, worst_root = 0;
         bool finite = true;
-        for (int n = 1; n <= 600; n++) {
+        for (int n = 1; n <= check_rounds(600); n++) {
             awt_step_stats stats;
             fixture_advance(f, fixture_clip(clips[c]), (int64_t)n * 16667, zero, zero, &stats);
             worst_link = (double)stats.link_error > worst_link ? (double)stats.link_error : worst_link;

@@ -21,7 +21,7 @@ export async function openBrowser() {
 
 /** The viewer at an address; `errors` gathers what the browser complains of. */
 export class View {
-  static async open(browser, address, { width = 640, height = 360, more = '&strands=600&smooth=0&bare=1' } = {}) {
+  static async open(browser, address, { width = 640, height = 360, more = '&strands=600&smooth=0&coarse=1&bare=1' } = {}) {
     const view = new View();
     view.page = await browser.newPage({ viewport: { width, height } });
     view.errors = [];

@@ -103,7 +103,7 @@ await test('viewer_shows_the_wisp_tree', async () => {
 });
 
 await test('viewer_on_a_second_page_shows_the_same_hair', async () => {
-  const second = await View.open(browser, gateway.view, { more: '&smooth=0&bare=1' });
+  const second = await View.open(browser, gateway.view, { more: '&smooth=0&coarse=1&bare=1' });
   await second.untilLive();
   const [driver, viewer] = [await view.knows(), await second.knows()];
   equal(viewer.forest, driver.forest, 'the forest');
@@ -117,7 +117,7 @@ await test('viewer_on_a_second_page_shows_the_same_hair', async () => {
 });
 
 await test('viewer_that_only_looks_shows_hair_between_the_frames', async () => {
-  const second = await View.open(browser, gateway.view, { more: '&smooth=0&bare=1' });
+  const second = await View.open(browser, gateway.view, { more: '&smooth=0&coarse=1&bare=1' });
   await second.untilLive();
   await second.page.evaluate(() => {
     globalThis.weights = [];

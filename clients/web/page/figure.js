@@ -4,7 +4,7 @@ import { LIGHT_SHADER } from '/awt/awt-hair.js';
 import { armParts, DEFAULT_COLLIDERS, distance, faceParts, PAINT, shapeOf, softColourAt } from './body-shape.js';
 import { surfaceOf } from './surface.js';
 
-const CELL_M = { head: 0.004, body: 0.008 }, MARGIN_M = 0.03, FRAMES = ['head', 'body'];
+const CELL_M = { head: 0.004, body: 0.008 }, COARSER = 2, MARGIN_M = 0.03, FRAMES = ['head', 'body'];
 
 /** Obstacles as CREATE_REPLY lists them, as parts; the default ones where the list is none. */
 function partsOf(colliders) {
@@ -34,8 +34,9 @@ function geometryOf(parts, cell) {
 }
 
 export class Figure {
-  constructor(scene, light) {
-    Object.assign(this, { scene, light, meshes: {} });
+  /** coarse: a quarter of the triangles, where drawing is slow. */
+  constructor(scene, light, { coarse = false } = {}) {
+    Object.assign(this, { scene, light, coarser: coarse ? COARSER : 1, meshes: {} });
     this.materials = Object.fromEntries(FRAMES.map((frame) => [frame, new THREE.ShaderMaterial({
       vertexShader: VERTEX, fragmentShader: FRAGMENT, vertexColors: true, uniforms: {
         ...light.uniforms, faceRadius: { value: 0 }, strokes: { value: PAINT.map(({ a, b }) => new THREE.Vector4(...a, ...b)) },
@@ -52,7 +53,7 @@ export class Figure {
     for (const frame of FRAMES) {
       const own = parts.filter((part) => part.frame === frame);
       own.push(...(frame === 'body' ? armParts(own) : radius > 0 ? faceParts(radius) : []));
-      this.replace(frame, own.length > 0 ? geometryOf(own, CELL_M[frame]) : null);
+      this.replace(frame, own.length > 0 ? geometryOf(own, CELL_M[frame] * this.coarser) : null);
     }
   }
 

@@ -32,5 +32,5 @@ export const DEFAULTS = { style: 'long', strands: 10000, motion: 'mouse', colour
 /** { token, settings, and what tests and pictures ask for } of the part of the address behind #. */
 export function readAddress(hash) {
   const values = Object.fromEntries(new URLSearchParams(hash.slice(1)));
-  return { token: /^[0-9a-f]{32}$/.test(values.token) ? values.token : '', settings: takeSettings(DEFAULTS, values), bare: values.bare === '1', smooth: values.smooth !== '0' };
+  return { token: /^[0-9a-f]{32}$/.test(values.token) ? values.token : '', settings: takeSettings(DEFAULTS, values), bare: values.bare === '1', smooth: values.smooth !== '0', coarse: values.coarse === '1' };
 }

@@ -22,7 +22,7 @@ document.body.classList.toggle('bare', address.bare);
 const kindOf = (level) => ({ kind: level.split(' ')[0], level: level.split(' ')[1] ?? 'full' });
 const stage = new Stage(document.getElementById('canvas'), address.smooth ? {} : { antialias: false, pixelRatio: 1 });
 const hair = new AwtHair(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/awt`, address.token, stage.scene, kindOf(settings.level));
-const figure = new Figure(stage.scene, hair.light), mouse = new MouseHead(stage.canvas), driver = new Driver(hair, mouse);
+const figure = new Figure(stage.scene, hair.light, address), mouse = new MouseHead(stage.canvas), driver = new Driver(hair, mouse);
 const faces = new Faces(), graph = new Graph(document.getElementById('graph')), panel = new Panel(changed, pressed);
 const failed = (text) => faces.say(text, 'error');
 const clock = new ClockControl(hair, failed);
