@@ -28,27 +28,31 @@ suite() {
     count build/suite.log
 }
 
-# run_shares TESTS LOG: a program whose tests can be shared, by as many processes as there are processors.
+# run_shares TESTS LOG: a program whose tests can be shared, in more shares than there are processors, so that none of these
+# is without work while another has much left.
+shares=$((8 * jobs))
 run_shares() {
-    n=0 processes=
-    while [ "$n" -lt "$jobs" ]; do
-        AWT_SHARE=$n/$jobs "$1" >build/"$2"-$n.log 2>&1 &
-        processes="$processes $!"
+    rm -f build/"$2"-*.log
+    n=0
+    while [ "$n" -lt "$shares" ]; do
+        echo "$n"
         n=$((n + 1))
-    done
-    wait $processes
+    done | xargs -P "$jobs" -I '{}' sh -c 'AWT_SHARE={}/"$0" "$1" >build/"$2"-{}.log 2>&1' "$shares" "$1" "$2"
     return 0 # what failed is in the logs
 }
 
 # tell_shares LOG: shows and counts what they wrote.
 tell_shares() {
+    before="$passed $failed $skipped"
     n=0
-    while [ "$n" -lt "$jobs" ]; do
+    while [ "$n" -lt "$shares" ]; do
         cat build/"$1"-$n.log >>"$log"
-        grep -v '^ok  ' build/"$1"-$n.log | tail -n 60
+        grep -v -e '^ok  ' -e '^[0-9]* passed, [0-9]* failed, [0-9]* skipped$' build/"$1"-$n.log | tail -n 60
         count build/"$1"-$n.log
         n=$((n + 1))
     done
+    set -- $before
+    echo "$((passed - $1)) passed, $((failed - $2)) failed, $((skipped - $3)) skipped"
 }
 
 # shared NAME TESTS: the suite of a program that can share its tests.
